@@ -1,0 +1,62 @@
+"""Step 1: optical flow between two images. Each method is a function of the two images."""
+
+from collections.abc import Callable, Mapping
+
+import cv2
+import numpy as np
+from jaxtyping import Float32, UInt8
+
+from algorithm.settings import FlowName
+
+FlowMethod = Callable[[np.ndarray, np.ndarray], np.ndarray]
+"""Takes two 8-bit images (row, column); gives the motion (column, row) in pixels of every pixel of the first."""
+
+_SMALLEST_SIDE = 32
+"""DIS and DeepFlow need some pixels for their pyramids; smaller images are padded with emptiness."""
+
+
+def flow_b_from_a(
+    image_a: UInt8[np.ndarray, "row column"],
+    image_b: UInt8[np.ndarray, "row column"],
+    *,
+    method: FlowName,
+) -> Float32[np.ndarray, "row column 2"]:
+    """Where image b shows what image a shows: the motion (column, row) of every pixel of a, in pixels.
+
+    Two equal images give exactly zero.
+    """
+    height, width = image_a.shape
+    if np.array_equal(image_a, image_b):
+        return np.zeros((height, width, 2), np.float32)
+    below, right = max(0, _SMALLEST_SIDE - height), max(0, _SMALLEST_SIDE - width)
+    padded = [
+        cv2.copyMakeBorder(image, 0, below, 0, right, cv2.BORDER_CONSTANT, value=0) for image in (image_a, image_b)
+    ]
+    return _METHODS[method](*padded)[:height, :width].astype(np.float32)
+
+
+def _dis(image_a: np.ndarray, image_b: np.ndarray) -> np.ndarray:
+    """Dense inverse search [Kroeger et al., ECCV 2016], down to the finest scale."""
+    method = cv2.DISOpticalFlow.create(cv2.DISOPTICAL_FLOW_PRESET_MEDIUM)
+    method.setFinestScale(0)
+    method.setPatchSize(8)
+    method.setPatchStride(2)
+    return np.asarray(method.calc(image_a, image_b, _room(image_a)))
+
+
+def _deepflow(image_a: np.ndarray, image_b: np.ndarray) -> np.ndarray:
+    """DeepFlow without its descriptor matches [Weinzaepfel et al., ICCV 2013]."""
+    return np.asarray(cv2.optflow.createOptFlow_DeepFlow().calc(image_a, image_b, _room(image_a)))
+
+
+def _farneback(image_a: np.ndarray, image_b: np.ndarray) -> np.ndarray:
+    """Polynomial expansion [Farneback, SCIA 2003]."""
+    return np.asarray(cv2.calcOpticalFlowFarneback(image_a, image_b, _room(image_a), 0.5, 4, 13, 5, 5, 1.1, 0))
+
+
+def _room(image: np.ndarray) -> np.ndarray:
+    """Room for a flow: OpenCV wants to be handed it."""
+    return np.zeros((*image.shape, 2), np.float32)
+
+
+_METHODS: Mapping[FlowName, FlowMethod] = {"dis": _dis, "deepflow": _deepflow, "farneback": _farneback}

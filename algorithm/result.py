@@ -1,0 +1,112 @@
+"""The solver's answer as the rows that `motions.parquet` holds."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Int
+from scipy import sparse
+from scipy.sparse.csgraph import connected_components
+
+from algorithm.completion import Completion
+from algorithm.inter import Polynomial
+from algorithm.representative import Curve
+from algorithm.settings import Settings
+from algorithm.trajectories import Trajectories
+from recording.motions import NOISE, OBSERVED, Link, Making, Motions, Representative
+from recording.recording import Recording
+from recording.version import VERSION
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Motion:
+    """Segments that are one motion."""
+
+    segments: tuple[int, ...]
+    """In order of time."""
+    curve: Curve
+    """Its representative."""
+    members: Bool[np.ndarray, "trajectory"]
+    """Which trajectories belong to it."""
+    completion: Completion
+    """In numbers of the members."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Solution:
+    """What the algorithm found."""
+
+    trajectories: Trajectories
+    segments: Int[np.ndarray, "trajectory"]
+    """-1 for noise."""
+    motions: tuple[Motion, ...]
+    links: Mapping[tuple[int, int], Polynomial]
+    """The polynomial between each pair of linked segments."""
+
+
+def motions_of(solution: Solution, recording: Recording, settings: Settings, seconds: Mapping[str, float]) -> Motions:
+    """The solution with everything that tells how it was made."""
+    trajectories = solution.trajectories
+    motion = np.full(trajectories.count, NOISE)
+    for number, found in enumerate(solution.motions):
+        motion[found.members] = number
+    parts = [np.flatnonzero(found.members)[found.completion.trajectory] for found in solution.motions]
+    completed = np.concatenate([np.zeros(0, int), *parts])
+    count = len(completed)
+    index = np.concatenate([trajectories.trajectory, completed])
+    number = _joined_numbers(solution)[index]
+    frame = _stacked(trajectories.frame, solution, "frame")
+    order = np.lexsort((frame, number))
+    return Motions(
+        frame=frame.astype(np.int32),
+        trajectory=number.astype(np.int32),
+        position=_stacked(trajectories.position, solution, "position").astype(np.float32),
+        column_row=np.concatenate([trajectories.column_row, np.full((count, 2), np.nan)]).astype(np.float32),
+        segment=solution.segments[index].astype(np.int32),
+        motion=motion[index].astype(np.int32),
+        source=_stacked(np.full(len(trajectories.frame), OBSERVED), solution, "source").astype(np.uint8),
+        confidence=_stacked(np.ones(len(trajectories.frame)), solution, "confidence").astype(np.float32),
+        representatives=tuple(_representative(number, found) for number, found in enumerate(solution.motions)),
+        links=_links(solution, settings),
+        making=Making(
+            settings=settings.model_dump(),
+            recording_digest=recording.digest(),
+            version=VERSION,
+            seconds=dict(seconds),
+        ),
+    ).rows(order)
+
+
+def _stacked(observed: np.ndarray, solution: Solution, name: str) -> np.ndarray:
+    """A column of the observed rows, followed by that of the completed ones."""
+    return np.concatenate([observed, *(getattr(motion.completion, name) for motion in solution.motions)])
+
+
+def _joined_numbers(solution: Solution) -> Int[np.ndarray, "trajectory"]:
+    """A number for every trajectory, the same for those that completion joined."""
+    count = solution.trajectories.count
+    before, after = [np.zeros(0, int)], [np.zeros(0, int)]
+    for motion in solution.motions:
+        members = np.flatnonzero(motion.members)
+        before.append(members[motion.completion.joins[0]])
+        after.append(members[motion.completion.joins[1]])
+    ends = (np.concatenate(before), np.concatenate(after))
+    graph = sparse.coo_array((np.ones(len(ends[0])), ends), shape=(count, count))
+    return np.asarray(connected_components(graph, directed=False)[1])
+
+
+def _representative(number: int, motion: Motion) -> Representative:
+    return Representative(
+        motion=number,
+        frame=motion.curve.frames.astype(np.int32),
+        position=motion.curve.position,
+        observed=motion.curve.observed,
+    )
+
+
+def _links(solution: Solution, settings: Settings) -> tuple[Link, ...]:
+    """The links, each with 1 less its error's share of epsilon 6 as its confidence (not calibrated)."""
+    return tuple(
+        Link(before=before, after=after, confidence=float(1.0 - polynomial.error_m / settings.eps6))
+        for (before, after), polynomial in sorted(solution.links.items())
+    )

@@ -1,0 +1,26 @@
+"""The unit of the paper's thresholds: the mean distance between neighbouring points."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from jaxtyping import Float32
+from scipy.spatial import cKDTree
+
+from recording.camera import Camera
+
+_FRAMES = 12
+
+
+def mean_point_spacing(depths: Sequence[Float32[np.ndarray, "row column"]], *, camera: Camera) -> float:
+    """The mean 3D distance of a return to the nearest other return of its frame, metres.
+
+    Over up to twelve frames spread over the recording. NaN where no frame has two returns.
+    """
+    chosen = np.unique(np.linspace(0, len(depths) - 1, _FRAMES).round().astype(int))
+    nearest = []
+    for number in chosen:
+        points = camera.world_points(depths[number])
+        points = points[np.isfinite(depths[number])]
+        if len(points) > 1:
+            nearest.append(cKDTree(points).query(points, k=2)[0][:, 1])
+    return float(np.concatenate(nearest).mean()) if nearest else float("nan")

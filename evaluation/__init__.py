@@ -1,0 +1,1 @@
+"""From a recording and motions to numbers and pictures."""

@@ -1,0 +1,50 @@
+"""Scores for people: a few lines with units."""
+
+from typing import Any
+
+_NOTHING = "-"
+
+
+def summary(scores: dict[str, Any]) -> str:
+    """The scores in lines of text; "-" stands for what cannot be computed."""
+    motions, segments, completion = scores["motions"], scores["segments"], scores["completion"]
+    identity, links, seconds = scores["identity"], scores["links"], scores["seconds"]
+    objects, hidden = _number(scores["objects"]), _number(completion["hidden_object_frames"])
+    holes, longest = _number(scores["holes"]), _number(scores["longest_hole_frames"])
+    rows = [
+        ("recording", f"{scores['scene'] or 'unnamed'}: {scores['frames']} frames, {objects} moving objects"),
+        ("", f"{_number(scores['points_per_frame'], '.0f')} points a frame; holes: {holes}, longest {longest} frames"),
+        ("motions found", f"{_number(motions['found'])} of {objects}, among {_number(motions['count'])} motions"),
+        ("purity", f"{_number(motions['purity'], '.3f')}; of segments {_number(segments['purity'], '.3f')}"),
+        (
+            "inverse purity",
+            f"{_number(motions['inverse_purity'], '.3f')}; of segments {_number(segments['inverse_purity'], '.3f')}",
+        ),
+        ("coverage", _number(scores["coverage"], ".3f")),
+        ("identity", f"IDF1 {_number(identity['idf1'], '.3f')}, HOTA {_number(identity['hota'], '.3f')}"),
+        ("links", f"precision {_number(links['precision'], '.2f')}, recall {_number(links['recall'], '.2f')}"),
+        (
+            "centre, hidden",
+            f"mean error {_centimetres(completion['centre_mean_m'])}, "
+            f"largest {_centimetres(completion['centre_max_m'])}",
+        ),
+        (
+            "points, hidden",
+            f"mean error {_centimetres(completion['mean_m'])}, 95 % within {_centimetres(completion['p95_m'])}",
+        ),
+        (
+            "completed",
+            f"recall {_number(completion['recall'], '.2f')} of {hidden} hidden object-frames, "
+            f"surface within 10 cm {_number(completion['surface_coverage_10cm'], '.2f')}",
+        ),
+        ("time", f"{_number(seconds['total'], '.1f')} s, of it flow {_number(seconds['flow'], '.1f')} s"),
+    ]
+    return "\n".join(f"{name:<15} {text}" for name, text in rows)
+
+
+def _number(value: float | None, form: str = "") -> str:
+    return _NOTHING if value is None else format(value, form)
+
+
+def _centimetres(metres: float | None) -> str:
+    return _NOTHING if metres is None else f"{100 * metres:.1f} cm"

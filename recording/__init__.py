@@ -1,0 +1,1 @@
+"""The contract between simulator, algorithm and evaluation: camera, frames, truth, motions, and their files."""

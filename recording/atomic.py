@@ -1,0 +1,73 @@
+"""Files and folders that appear whole or not at all."""
+
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from recording.errors import InputError
+
+
+@contextmanager
+def whole_file(path: Path, *, overwrite: bool = False) -> Iterator[Path]:
+    """A path to write to, which becomes `path` when the block ends well and vanishes when it does not."""
+    _refuse_existing(path, overwrite=overwrite)
+    partial = _partial_name(path)
+    with _usable(path):
+        partial.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            yield partial
+            partial.replace(path)
+        finally:
+            partial.unlink(missing_ok=True)
+
+
+@contextmanager
+def whole_folder(path: Path, *, overwrite: bool = False) -> Iterator[Path]:
+    """An empty folder to fill, which becomes `path` when the block ends well and vanishes when it does not.
+
+    What a killed run left behind under the working name is removed first. With `overwrite` an old result
+    stays in its place until the new one is complete.
+    """
+    _refuse_existing(path, overwrite=overwrite)
+    partial = _partial_name(path)
+    with _usable(path):
+        shutil.rmtree(partial, ignore_errors=True)
+        partial.mkdir(parents=True)
+        try:
+            yield partial
+            if path.exists():
+                _exchange(partial, path)
+            else:
+                partial.replace(path)
+        finally:
+            shutil.rmtree(partial, ignore_errors=True)
+
+
+def _exchange(new: Path, path: Path) -> None:
+    """Put the new folder in the old one's place; a folder cannot be replaced in one step, so two renames."""
+    old = path.with_name(f".{path.name}.old")
+    shutil.rmtree(old, ignore_errors=True)
+    path.rename(old)
+    new.rename(path)
+    shutil.rmtree(old)
+
+
+def _partial_name(path: Path) -> Path:
+    return path.with_name(f".{path.name}.partial")
+
+
+def _refuse_existing(path: Path, *, overwrite: bool) -> None:
+    if path.exists() and not overwrite:
+        raise InputError(f"{path} exists already: choose another place, or pass --overwrite to replace it")
+
+
+@contextmanager
+def _usable(path: Path) -> Iterator[None]:
+    """Turn a full, missing or forbidden disk into an error that says which file."""
+    try:
+        yield
+    except OSError as error:
+        if error.filename is None and error.strerror is None:
+            raise
+        raise InputError(f"{path}: cannot be written: {error.strerror}") from error

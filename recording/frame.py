@@ -1,0 +1,48 @@
+"""One frame of a recording: what the sensor saw and, where it is known, what really stood there."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float32, UInt32
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Labels:
+    """The material point behind every pixel."""
+
+    objectid: UInt32[np.ndarray, "row column"]
+    """The object's id; 0 where the pixel's ray meets nothing."""
+    face: UInt32[np.ndarray, "row column"] | None = None
+    """The number of the object's face; None where only the objects' masks are known."""
+    u: Float32[np.ndarray, "row column"] | None = None
+    """Barycentric weight of the face's corner B."""
+    v: Float32[np.ndarray, "row column"] | None = None
+    """Barycentric weight of the face's corner C."""
+
+    @property
+    def exact(self) -> bool:
+        """Whether the material points are known, not only the objects."""
+        return self.face is not None and self.u is not None and self.v is not None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Frame:
+    """A depth image with its labels, if it has any."""
+
+    depth: Float32[np.ndarray, "row column"]
+    """Sensed distance along the camera's z axis, metres; NaN = no return."""
+    labels: Labels | None = None
+    """Ground truth by pixel, of the centre ray, whatever the sensor made of its depth."""
+    clean_depth: Float32[np.ndarray, "row column"] | None = None
+    """The depth before the sensor, metres; NaN = nothing there."""
+    reason: UInt32[np.ndarray, "row column"] | None = None
+    """Why a return is missing or mixed (`recording.frame.REASONS`); 0 = it is as it should be."""
+
+    @property
+    def seen(self) -> Bool[np.ndarray, "row column"]:
+        """Where the sensor has a return."""
+        return np.isfinite(self.depth)
+
+
+REASONS = {0: "return", 1: "nothing there"}
+"""What the numbers of `Frame.reason` mean."""

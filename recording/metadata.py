@@ -1,0 +1,133 @@
+"""`recording.json`: what is known about a recording beside its frames."""
+
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import Field, PositiveInt, field_validator, model_validator
+
+from recording.camera import PIXEL_CENTRE, Camera
+from recording.checks import Frozen
+
+FORMAT_NAME = "unocclude-recording"
+FORMAT_VERSION = 1
+
+Positive = Annotated[float, Field(gt=0)]
+Row = tuple[float, float, float, float]
+
+
+class Format(Frozen):
+    """Which kind of document this is."""
+
+    name: Literal["unocclude-recording"] = "unocclude-recording"
+    version: Literal[1] = 1
+
+
+class CameraRecord(Frozen):
+    """The camera as JSON; `recording.camera.Camera` is the same as a value to compute with."""
+
+    fx: Positive
+    fy: Positive
+    cx: float
+    cy: float
+    world_from_camera: tuple[Row, Row, Row, Row]
+    """Rigid 4x4 transform, OpenCV axes, metres."""
+
+    @field_validator("world_from_camera")
+    @classmethod
+    def _rigid(cls, rows: tuple[Row, Row, Row, Row]) -> tuple[Row, Row, Row, Row]:
+        matrix = np.array(rows)
+        rotation = matrix[:3, :3]
+        if not (np.allclose(rotation @ rotation.T, np.eye(3), atol=1e-4) and np.linalg.det(rotation) > 0):
+            raise ValueError("expected a rotation and a translation, without scale or mirroring")
+        if not np.array_equal(matrix[3], [0, 0, 0, 1]):
+            raise ValueError("expected (0, 0, 0, 1) as the last row")
+        return rows
+
+
+class DepthRecord(Frozen):
+    """How the channel `Z` is to be read."""
+
+    unit: Literal["metre"] = "metre"
+    kind: Literal["z"] = "z"
+    """Distance along the camera's z axis, not along the ray."""
+    no_return: Literal[0] = 0
+
+
+class ObjectRecord(Frozen):
+    """One object of a recording whose truth is known."""
+
+    id: PositiveInt
+    name: str
+    kind: str
+    """person, ball, box, cylinder, cone, ..."""
+    moving: bool
+
+
+class Metadata(Frozen):
+    """The content of `recording.json`. Only what a real recording knows is required."""
+
+    format: Format
+    name: str | None = None
+    frames: PositiveInt
+    fps: Positive
+    width: PositiveInt
+    height: PositiveInt
+    camera: CameraRecord
+    depth: DepthRecord
+    pixel_centre: float = Field(default=PIXEL_CENTRE, ge=PIXEL_CENTRE, le=PIXEL_CENTRE)
+    timestamps: tuple[float, ...] | None = None
+    """Seconds, one a frame."""
+    sensor: dict[str, Any] | None = None
+    """Preset and parameters of the simulated sensor."""
+    seed: int | None = None
+    objects: tuple[ObjectRecord, ...] | None = None
+    scene: dict[str, Any] | None = None
+    """The whole scene, resolved."""
+    scene_digest: str | None = None
+    made_by: str | None = None
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Metadata":
+        if self.timestamps is not None:
+            if len(self.timestamps) != self.frames:
+                raise ValueError(f"expected {self.frames} timestamps, one a frame, got {len(self.timestamps)}")
+            if np.any(np.diff(self.timestamps) <= 0):
+                raise ValueError("expected timestamps that grow from frame to frame")
+        ids = [entry.id for entry in self.objects or ()]
+        if len(set(ids)) != len(ids):
+            raise ValueError("expected every object id once")
+        return self
+
+    def as_camera(self) -> Camera:
+        """The camera to compute with."""
+        return Camera(
+            width=self.width,
+            height=self.height,
+            fx=self.camera.fx,
+            fy=self.camera.fy,
+            cx=self.camera.cx,
+            cy=self.camera.cy,
+            world_from_camera=np.array(self.camera.world_from_camera),
+        )
+
+
+def camera_record(camera: Camera) -> CameraRecord:
+    """The camera as it stands in `recording.json`."""
+    matrix = [tuple(map(float, row)) for row in camera.world_from_camera]
+    return CameraRecord.model_validate(
+        {"fx": camera.fx, "fy": camera.fy, "cx": camera.cx, "cy": camera.cy, "world_from_camera": matrix}
+    )
+
+
+def metadata_of(camera: Camera, *, frames: int, fps: float, **known: Any) -> Metadata:
+    """The metadata of a recording through the camera; `known` are further keys of `Metadata`."""
+    return Metadata(
+        format=Format(),
+        frames=frames,
+        fps=fps,
+        width=camera.width,
+        height=camera.height,
+        camera=camera_record(camera),
+        depth=DepthRecord(),
+        **known,
+    )

@@ -1,0 +1,154 @@
+"""`motions.parquet`: reading and writing motions."""
+
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from recording.atomic import whole_file
+from recording.errors import InputError
+from recording.motions import NOISE, SOURCES, Link, Making, Motions, Representative
+
+_REQUIRED = ("frame", "trajectory", "x", "y", "z", "motion", "source")
+_KINDS = {
+    "frame": pa.int32(),
+    "trajectory": pa.int32(),
+    **dict.fromkeys(("x", "y", "z", "row", "column"), pa.float32()),
+    "segment": pa.int32(),
+    "motion": pa.int32(),
+    "confidence": pa.float32(),
+}
+
+
+def save_motions(motions: Motions, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
+    """Write the motions as Parquet; what belongs to them goes into the schema's metadata as JSON."""
+    x, y, z = motions.position.T
+    column, row = motions.column_row.T
+    table = pa.table(
+        {
+            "frame": motions.frame,
+            "trajectory": motions.trajectory,
+            **{"x": x, "y": y, "z": z, "row": row, "column": column},
+            "segment": motions.segment,
+            "motion": motions.motion,
+            "source": pa.DictionaryArray.from_arrays(motions.source.astype(np.int8), list(SOURCES)),
+            "confidence": motions.confidence,
+        }
+    ).replace_schema_metadata({key: json.dumps(value) for key, value in _belongings(motions).items()})
+    with whole_file(Path(path), overwrite=overwrite) as partial:
+        pq.write_table(table, partial, compression="zstd")
+
+
+def load_motions(path: str | os.PathLike[str]) -> Motions:
+    """The motions in a Parquet file, from this project or from elsewhere.
+
+    Required are frame, trajectory, x, y, z, motion and source; row and column are NaN, segment is the
+    motion and confidence is 1 where a file lacks them. Rows come back sorted by trajectory, then frame.
+    """
+    place = Path(path)
+    if not place.is_file():
+        raise InputError(f"{place}: expected a motions.parquet, but there is no such file: run 'unocclude solve'")
+    try:
+        table = pq.read_table(place)
+    except (pa.ArrowException, OSError) as error:
+        reason = " ".join(str(error).split())
+        raise InputError(f"{place}: expected a Parquet file, but it cannot be read: {reason}") from None
+    missing = [name for name in _REQUIRED if name not in table.column_names]
+    if missing:
+        raise InputError(f"{place}: expected the columns {', '.join(_REQUIRED)}; missing: {', '.join(missing)}")
+    columns = {name: _column(place, table, name) for name in _KINDS if name in table.column_names}
+    order = np.lexsort((columns["frame"], columns["trajectory"]))
+    belongings = _read_belongings(place, table.schema.metadata or {})
+    return _motions(columns, _source(place, table), belongings).rows(order)
+
+
+def _motions(columns: dict[str, np.ndarray], source: np.ndarray, belongings: dict[str, Any]) -> Motions:
+    count = len(columns["frame"])
+    unknown = np.full(count, np.nan, np.float32)
+    return Motions(
+        frame=columns["frame"],
+        trajectory=columns["trajectory"],
+        position=np.stack([columns["x"], columns["y"], columns["z"]], axis=1),
+        column_row=np.stack([columns.get("column", unknown), columns.get("row", unknown)], axis=1),
+        segment=columns.get("segment", columns["motion"]),
+        motion=columns["motion"],
+        source=source,
+        confidence=columns.get("confidence", np.ones(count, np.float32)),
+        **belongings,
+    )
+
+
+def _column(place: Path, table: pa.Table, name: str) -> np.ndarray:
+    kind = _KINDS[name]
+    try:
+        values = table.column(name).cast(kind)
+    except pa.ArrowException as error:
+        raise InputError(f"{place}: expected column {name!r} as {kind}, but {_line(error)}") from None
+    if values.null_count:
+        raise InputError(f"{place}: expected a value in every row of {name!r}, got {values.null_count} without")
+    array = values.to_numpy().astype(kind.to_pandas_dtype())
+    if name in ("x", "y", "z") and not np.isfinite(array).all():
+        raise InputError(f"{place}: expected finite places, got NaN or infinity in column {name!r}")
+    if name == "motion" and (array < NOISE).any():
+        raise InputError(f"{place}: expected motions from {NOISE} (noise) upwards, got {array.min()}")
+    return np.asarray(array)
+
+
+def _source(place: Path, table: pa.Table) -> np.ndarray:
+    names = table.column("source").to_pylist()
+    unknown = set(names) - set(SOURCES)
+    if unknown:
+        raise InputError(f"{place}: expected {', '.join(SOURCES)} in column 'source', got {unknown.pop()!r}")
+    return np.array([SOURCES.index(name) for name in names], np.uint8)
+
+
+def _line(error: Exception) -> str:
+    return " ".join(str(error).split())
+
+
+def _belongings(motions: Motions) -> dict[str, Any]:
+    return {
+        "settings": motions.making.settings,
+        "recording_digest": motions.making.recording_digest,
+        "version": motions.making.version,
+        "seconds": motions.making.seconds,
+        "representatives": [
+            {
+                "motion": entry.motion,
+                "frame": entry.frame.tolist(),
+                **{axis: entry.position[:, number].tolist() for number, axis in enumerate("xyz")},
+                "observed": entry.observed.tolist(),
+            }
+            for entry in motions.representatives
+        ],
+        "links": [vars(link) for link in motions.links],
+        "events": list(motions.events),
+    }
+
+
+def _read_belongings(place: Path, metadata: dict[bytes, bytes]) -> dict[str, Any]:
+    known = ("settings", "recording_digest", "version", "seconds", "representatives", "links", "events")
+    try:
+        found = {key: json.loads(metadata[key.encode()]) for key in known if key.encode() in metadata}
+        making = {key: found[key] for key in known[:4] if key in found}
+        return {
+            "making": Making(**making),
+            "representatives": tuple(_representative(entry) for entry in found.get("representatives", ())),
+            "links": tuple(Link(**link) for link in found.get("links", ())),
+            "events": tuple(found.get("events", ())),
+        }
+    except (ValueError, TypeError, KeyError) as error:
+        raise InputError(f"{place}: the schema's metadata is damaged: {_line(error)}: solve again") from None
+
+
+def _representative(entry: dict[str, Any]) -> Representative:
+    return Representative(
+        motion=int(entry["motion"]),
+        frame=np.array(entry["frame"], np.int32),
+        position=np.array([entry[axis] for axis in "xyz"], np.float64).T.reshape(-1, 3),
+        observed=np.array(entry["observed"], bool),
+    )

@@ -1,0 +1,64 @@
+"""A recording: frames through one fixed camera, with its truth where it is known."""
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from jaxtyping import Float32
+
+from recording.camera import Camera
+from recording.exr import stored_depth
+from recording.frame import Frame
+from recording.metadata import Metadata
+from recording.truth import Truth
+
+XRay = Mapping[int, Float32[np.ndarray, "row column"]]
+"""Each moving object's depth as if nothing stood before it, metres; NaN where it is not."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Recording:
+    """Frames and what is known about them; frames and truth may be read from disk as they are asked for."""
+
+    metadata: Metadata
+    frames: Sequence[Frame]
+    truth: Truth | None = None
+    xray: Sequence[XRay] | None = None
+    """One a frame."""
+    camera: Camera = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "camera", self.metadata.as_camera())
+
+    @property
+    def fps(self) -> float:
+        """Frames a second."""
+        return self.metadata.fps
+
+    @property
+    def moving_ids(self) -> tuple[int, ...]:
+        """The ids of the objects that move; empty where no object is known."""
+        return tuple(entry.id for entry in self.metadata.objects or () if entry.moving)
+
+    def digest(self) -> str:
+        """SHA-256 of what the sensor saw: camera, frame rate and every depth.
+
+        A copy that was stripped of its truth has the same digest.
+        """
+        known = self.metadata.model_dump(mode="json", include={"fps", "width", "height", "camera"})
+        content = hashlib.sha256(json.dumps(known, sort_keys=True).encode())
+        for frame in self.frames:
+            content.update(stored_depth(frame.depth).tobytes())
+        return content.hexdigest()
+
+
+def stripped(recording: Recording) -> Recording:
+    """The recording as a real sensor would have made it: the required keys and `Z` alone."""
+    required = {name for name, info in Metadata.model_fields.items() if info.is_required()}
+    bare = recording.metadata.model_dump(include=required)
+    return Recording(
+        metadata=Metadata.model_validate(bare),
+        frames=tuple(Frame(depth=frame.depth) for frame in recording.frames),
+    )

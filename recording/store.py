@@ -1,0 +1,187 @@
+"""Recordings on disk: `recording.json`, `frames/`, `xray/`, `truth.npz`."""
+
+import os
+import zipfile
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
+from pathlib import Path
+from typing import overload
+
+import numpy as np
+
+from recording.atomic import whole_folder
+from recording.camera import Camera
+from recording.checks import json_document, validated
+from recording.errors import InputError
+from recording.exr import read_channels, read_frame, stored_depth, write_channels, write_frame
+from recording.frame import Frame
+from recording.metadata import Metadata
+from recording.recording import Recording, XRay
+from recording.truth import MeshSequence, Truth
+
+
+def write_recording(
+    folder: Path,
+    *,
+    metadata: Metadata,
+    frames: Iterable[tuple[Frame, XRay | None]],
+    truth: Truth | None = None,
+    overwrite: bool = False,
+) -> None:
+    """Write a recording while its frames are being made; the folder appears when all of it is there."""
+    camera = metadata.as_camera()
+    with whole_folder(folder, overwrite=overwrite) as partial:
+        (partial / "frames").mkdir()
+        count = 0
+        for number, (frame, xray) in enumerate(frames):
+            write_frame(partial / "frames" / frame_name(number), frame, camera=camera, fps=metadata.fps)
+            if xray is not None:
+                _write_xray(partial / "xray" / frame_name(number), xray)
+            count = number + 1
+        if count != metadata.frames:
+            raise InputError(f"{folder}: expected {metadata.frames} frames, got {count}")
+        if truth is not None:
+            _write_truth(partial / "truth.npz", truth)
+        text = metadata.model_dump_json(indent=2, exclude_none=True)
+        (partial / "recording.json").write_text(text + "\n", encoding="utf-8")
+
+
+def save_recording(recording: Recording, folder: str | os.PathLike[str], *, overwrite: bool = False) -> None:
+    """Write a recording that is complete."""
+    xrays: Iterable[XRay | None] = recording.xray or [None] * recording.metadata.frames
+    write_recording(
+        Path(folder),
+        metadata=recording.metadata,
+        frames=zip(recording.frames, xrays, strict=True),
+        truth=recording.truth,
+        overwrite=overwrite,
+    )
+
+
+def load_recording(folder: str | os.PathLike[str]) -> Recording:
+    """The recording in a folder; frames and truth are read when they are asked for."""
+    place = Path(folder)
+    description = place / "recording.json"
+    if not description.is_file():
+        raise InputError(f"{place}: expected a recording, but it holds no recording.json")
+    metadata = validated(Metadata, json_document(description), source=str(description))
+    camera = metadata.as_camera()
+    missing = [number for number in range(metadata.frames) if not _frame_path(place, number).is_file()]
+    if missing:
+        raise InputError(
+            f"{_frame_path(place, missing[0])} is missing: recording.json promises {metadata.frames} frames"
+        )
+    return Recording(
+        metadata=metadata,
+        frames=_StoredFrames(place, metadata.frames, camera),
+        truth=_StoredTruth(place / "truth.npz") if (place / "truth.npz").is_file() else None,
+        xray=_StoredXRays(place, metadata.frames, camera) if (place / "xray").is_dir() else None,
+    )
+
+
+def frame_name(number: int) -> str:
+    """The file name of a frame."""
+    return f"{number:06d}.exr"
+
+
+def _frame_path(folder: Path, number: int) -> Path:
+    return folder / "frames" / frame_name(number)
+
+
+class _Stored:
+    """What frames and X-rays on disk have in common: they are counted, and read one by one."""
+
+    def __init__(self, folder: Path, count: int, camera: Camera) -> None:
+        self._folder = folder
+        self._count = count
+        self._shape = (camera.height, camera.width)
+
+    def __len__(self) -> int:
+        return self._count
+
+    def _number(self, index: int) -> int:
+        if not -self._count <= index < self._count:
+            raise IndexError(index)
+        return index % self._count
+
+
+class _StoredFrames(_Stored, Sequence[Frame]):
+    """The frames of a recording on disk."""
+
+    @overload
+    def __getitem__(self, index: int) -> Frame: ...
+    @overload
+    def __getitem__(self, index: slice) -> Sequence[Frame]: ...
+    def __getitem__(self, index: int | slice) -> Frame | Sequence[Frame]:
+        if isinstance(index, slice):
+            return [self[number] for number in range(*index.indices(self._count))]
+        return read_frame(_frame_path(self._folder, self._number(index)), shape=self._shape)
+
+
+class _StoredXRays(_Stored, Sequence[XRay]):
+    """The X-ray twins of a recording on disk."""
+
+    @overload
+    def __getitem__(self, index: int) -> XRay: ...
+    @overload
+    def __getitem__(self, index: slice) -> Sequence[XRay]: ...
+    def __getitem__(self, index: int | slice) -> XRay | Sequence[XRay]:
+        if isinstance(index, slice):
+            return [self[number] for number in range(*index.indices(self._count))]
+        path = self._folder / "xray" / frame_name(self._number(index))
+        channels = read_channels(path, shape=self._shape)
+        return {
+            int(name.removeprefix("xray_")): np.where(pixels > 0, pixels, np.float32(np.nan))
+            for name, pixels in channels.items()
+        }
+
+
+class _StoredTruth(Mapping[int, MeshSequence]):
+    """The meshes in a `truth.npz`, each read when it is first asked for."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        try:
+            self._arrays = np.load(path, allow_pickle=False)
+            names = self._arrays.files
+        except (OSError, ValueError, EOFError, AttributeError, zipfile.BadZipFile):
+            raise InputError(f"{path}: expected a NumPy .npz archive: make the recording again") from None
+        self._ids = sorted(int(name.removeprefix("faces_")) for name in names if name.startswith("faces_"))
+        self._mesh = lru_cache(maxsize=None)(self._read)
+
+    def __getitem__(self, objectid: int) -> MeshSequence:
+        if objectid not in self._ids:
+            raise KeyError(objectid)
+        return self._mesh(objectid)
+
+    def __iter__(self) -> Iterator[int]:
+        return iter(self._ids)
+
+    def __len__(self) -> int:
+        return len(self._ids)
+
+    def _read(self, objectid: int) -> MeshSequence:
+        try:
+            faces, vertices = (self._arrays[f"{name}_{objectid}"] for name in ("faces", "vertices"))
+        except (KeyError, ValueError, OSError, zipfile.BadZipFile):
+            raise InputError(f"{self._path}: the mesh of object {objectid} is damaged: make it again") from None
+        return MeshSequence(faces=faces.astype(np.int32), vertices=vertices.astype(np.float32))
+
+
+def _write_xray(path: Path, xray: XRay) -> None:
+    path.parent.mkdir(exist_ok=True)
+    channels = {f"xray_{objectid}": stored_depth(depth) for objectid, depth in xray.items()}
+    write_channels(path, channels, attributes={"unocclude.depth": "metres along z, 0 = not this object"})
+
+
+def _write_truth(path: Path, truth: Truth) -> None:
+    """Write the meshes uncompressed: vertices hardly compress, and reading one mesh then touches only it.
+
+    The archive is an `.npz` whose members bear no date, so that the same scene gives the same bytes.
+    """
+    with zipfile.ZipFile(path, "w") as archive:
+        for objectid, mesh in truth.items():
+            for name, values in (("faces", mesh.faces), ("vertices", mesh.vertices)):
+                undated = zipfile.ZipInfo(f"{name}_{objectid}.npy")
+                with archive.open(undated, "w", force_zip64=True) as member:
+                    np.lib.format.write_array(member, values, allow_pickle=False)

@@ -1,0 +1,137 @@
+"""The schema of a scene's TOML file: what happens, seen by which camera.
+
+Lengths are metres, times seconds, speeds metres a second; what is in degrees says so in its name.
+`docs/scenes.md` shows a minimal and a full example.
+"""
+
+from importlib.resources import files
+from pathlib import Path
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field, PositiveInt, model_validator
+
+from recording.camera import Camera, looking_at
+from recording.checks import Frozen, nearest_name, toml_document, validated
+from recording.errors import InputError
+from simulator.things import Ball, Obstacle, Person, Point, Positive
+
+NotNegative = Annotated[float, Field(ge=0)]
+
+
+class CameraSpot(Frozen):
+    """The virtual scanner: a pinhole with square pixels, upright, its principal point in the middle."""
+
+    width: PositiveInt = 320
+    """Picture width, pixels."""
+    height: PositiveInt = 240
+    """Picture height, pixels."""
+    position: Point
+    """Where it stands, metres."""
+    look_at: Point
+    """The point in the middle of its picture, metres."""
+    horizontal_fov_deg: Annotated[float, Field(ge=1, le=179)] = 60.0
+    """Angle between the picture's left and right edges, degrees."""
+
+    @model_validator(mode="after")
+    def _looks_somewhere(self) -> "CameraSpot":
+        if self.position == self.look_at:
+            raise ValueError("expected 'look_at' to be another point than 'position'")
+        return self
+
+    def as_camera(self) -> Camera:
+        """The camera to compute with."""
+        focal = self.width / 2 / np.tan(np.radians(self.horizontal_fov_deg) / 2)
+        return Camera(
+            width=self.width,
+            height=self.height,
+            fx=float(focal),
+            fy=float(focal),
+            cx=self.width / 2,
+            cy=self.height / 2,
+            world_from_camera=looking_at(self.position, self.look_at),
+        )
+
+
+class Vary(Frozen):
+    """What another seed may change in people's walks: the same scene on another day."""
+
+    sideways_m: NotNegative = 0.3
+    """Each path is shifted across its direction by up to so much, either way, metres."""
+    speed_share: Annotated[float, Field(ge=0, lt=1)] = 0.15
+    """Each walk is faster or slower by up to this share."""
+    start_s: NotNegative = 0.3
+    """Each walk starts sooner or later by up to so much, seconds."""
+    phase: bool = True
+    """Whether each walk begins anywhere in the gait's cycle."""
+    bodies: bool = True
+    """Whether anybody may be anyone."""
+    clearance_m: NotNegative = 0.6
+    """Nobody comes nearer to another's centre, metres."""
+    obstacle_clearance_m: NotNegative = 0.3
+    """Nobody's centre comes nearer to an obstacle, metres."""
+
+
+class PaperSettings(Frozen):
+    """The thresholds that Table 1 of the paper states for the scene, in the paper's units."""
+
+    eps1: float
+    eps2: float
+    eps3: float
+    eps4: float
+    eps5: float
+
+
+class Sensor(Frozen):
+    """What the scanner makes of the depth."""
+
+    preset: Literal["ideal"] = "ideal"
+    """`ideal`: exact depth wherever the ray meets something."""
+
+
+class Scene(Frozen):
+    """A scene, as its TOML file says it."""
+
+    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]*$")]
+    """Letters, digits, `_`, `-`, `.`: the recording's folder is called so."""
+    description: str = ""
+    """One sentence for the reader."""
+    frames: PositiveInt
+    """How many pictures are taken."""
+    fps: Positive
+    """Pictures a second."""
+    camera: CameraSpot
+    people: tuple[Person, ...] = ()
+    balls: tuple[Ball, ...] = ()
+    obstacles: tuple[Obstacle, ...] = ()
+    vary: Vary = Vary()
+    sensor: Sensor = Sensor()
+    paper: PaperSettings | None = None
+
+    @model_validator(mode="after")
+    def _something_named_once(self) -> "Scene":
+        things: tuple[Person | Ball | Obstacle, ...] = (*self.people, *self.balls, *self.obstacles)
+        if not things:
+            raise ValueError("expected at least one of 'people', 'balls' and 'obstacles'")
+        names = [thing.name for thing in things if thing.name is not None]
+        twice = next((name for name in names if names.count(name) > 1), None)
+        if twice is not None:
+            raise ValueError(f"expected every name once, but two are called {twice!r}")
+        return self
+
+
+def scene_names() -> list[str]:
+    """The scenes that come with the program."""
+    return sorted(entry.name.removesuffix(".toml") for entry in files("scenes").iterdir() if entry.name[-5:] == ".toml")
+
+
+def load_scene(name_or_path: str | Path) -> Scene:
+    """The scene of that name among those that come with the program, or in that TOML file."""
+    text = str(name_or_path)
+    if text in scene_names():
+        place = Path(str(files("scenes") / f"{text}.toml"))
+    elif text.endswith(".toml") or isinstance(name_or_path, Path):
+        place = Path(text)
+    else:
+        raise InputError(f"unknown scene {text!r}: {nearest_name(text, scene_names())} (or the path of a .toml file)")
+    return validated(Scene, toml_document(place), source=str(place))

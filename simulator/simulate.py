@@ -1,0 +1,162 @@
+"""From a scene to a recording: every picture with its truth, exact and repeatable."""
+
+import hashlib
+import json
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from recording.checks import validated
+from recording.errors import InputError
+from recording.frame import Frame, Labels
+from recording.metadata import Metadata, metadata_of
+from recording.progress import tracked
+from recording.recording import Recording, XRay
+from recording.store import write_recording
+from recording.truth import Truth
+from recording.version import VERSION
+from simulator.backend import Backend, BackendWish, find_backend
+from simulator.clearance import Clearance, smallest_clearance
+from simulator.raycast import RayCaster
+from simulator.scene import Scene, load_scene
+from simulator.stage import Actor, actors, walkers_centres
+from simulator.variation import varied
+
+NOTHING_THERE = 1
+"""The reason of a pixel whose ray meets nothing (`recording.frame.REASONS`)."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Simulation:
+    """A scene made ready: everything but its pictures."""
+
+    scene: Scene
+    """Resolved: after variation, at the size and length asked for."""
+    metadata: Metadata
+    cast: tuple[Actor, ...]
+    clearance: Clearance
+    """How near people come to one another and to obstacles in these frames."""
+
+    @property
+    def truth(self) -> Truth:
+        """Each object's mesh in every frame."""
+        return {actor.record.id: actor.mesh for actor in self.cast}
+
+    def pictures(self, backend: Backend) -> Iterator[tuple[Frame, XRay]]:
+        """Each frame with its X-ray twin, one after the other, none kept.
+
+        The X-ray twin is every moving object's depth with nothing else on the scene.
+        """
+        camera = self.metadata.as_camera()
+        everything = RayCaster(self.truth, camera, backend)
+        alone = {a.record.id: RayCaster({a.record.id: a.mesh}, camera, backend) for a in self.cast if a.record.moving}
+        numbers = tracked(range(self.scene.frames), f"simulating {self.scene.name}", total=self.scene.frames)
+        for number in numbers:
+            xray = {objectid: caster.cast(number).depth for objectid, caster in alone.items()}
+            yield _ideal_frame(everything, number), xray
+
+
+def prepared(
+    scene: str | Path | Scene,
+    *,
+    seed: int = 0,
+    size: tuple[int, int] | None = None,
+    frames: int | None = None,
+    sensor: str | None = None,
+) -> Simulation:
+    """The scene under the seed, ready to be cast.
+
+    `size` (width, height) in pixels changes the picture, not the horizontal field of view; `frames` cuts
+    the scene short or lets it go on, `sensor` names another preset; what is None is as the scene says.
+    """
+    given = scene if isinstance(scene, Scene) else load_scene(scene)
+    resolved = _changed(varied(given, seed), size=size, frames=frames, sensor=sensor)
+    cast = actors(resolved)
+    document = resolved.model_dump(mode="json")
+    metadata = metadata_of(
+        resolved.camera.as_camera(),
+        frames=resolved.frames,
+        fps=resolved.fps,
+        name=resolved.name,
+        sensor=resolved.sensor.model_dump(mode="json"),
+        seed=seed,
+        objects=tuple(actor.record for actor in cast),
+        scene=document,
+        scene_digest=_digest(document),
+        made_by=f"unocclude {VERSION}",
+    )
+    clearance = smallest_clearance(walkers_centres(resolved), resolved.obstacles)
+    return Simulation(scene=resolved, metadata=metadata, cast=cast, clearance=clearance)
+
+
+def simulate(
+    scene: str | Path | Scene,
+    *,
+    seed: int = 0,
+    size: tuple[int, int] | None = None,
+    frames: int | None = None,
+    backend: BackendWish = "auto",
+) -> Recording:
+    """The recording of a scene (a name, a TOML file or a `Scene`), in memory."""
+    simulation = prepared(scene, seed=seed, size=size, frames=frames)
+    pictures = list(simulation.pictures(find_backend(backend)))
+    return Recording(
+        metadata=simulation.metadata,
+        frames=tuple(frame for frame, _ in pictures),
+        truth=simulation.truth,
+        xray=tuple(xray for _, xray in pictures),
+    )
+
+
+def write_simulation(
+    simulation: Simulation, folder: Path, *, backend: BackendWish = "auto", overwrite: bool = False
+) -> None:
+    """Cast the pictures straight to the folder: one at a time is in memory."""
+    write_recording(
+        folder,
+        metadata=simulation.metadata,
+        frames=simulation.pictures(find_backend(backend)),
+        truth=simulation.truth,
+        overwrite=overwrite,
+    )
+
+
+def picture_size(text: str, scene: Scene) -> tuple[int, int]:
+    """Width and height in pixels that `640x480`, or `2x` for twice the scene's own, stands for."""
+    if match := re.fullmatch(r"([1-9]\d*)x([1-9]\d*)", text):
+        return int(match[1]), int(match[2])
+    if match := re.fullmatch(r"([1-9]\d*)x", text):
+        return int(match[1]) * scene.camera.width, int(match[1]) * scene.camera.height
+    raise InputError(f"expected a picture size such as 640x480 or 2x, got {text!r}")
+
+
+def _changed(scene: Scene, *, size: tuple[int, int] | None, frames: int | None, sensor: str | None) -> Scene:
+    """The scene with what was asked for in place of what it says, held against the schema again."""
+    document = scene.model_dump()
+    if size is not None:
+        document["camera"] |= {"width": size[0], "height": size[1]}
+    if frames is not None:
+        document["frames"] = frames
+    if sensor is not None:
+        document["sensor"] = {"preset": sensor}
+    return validated(Scene, document, source=f"scene {scene.name!r}")
+
+
+def _ideal_frame(caster: RayCaster, number: int) -> Frame:
+    """The frame as a sensor without flaws sees it."""
+    hits = caster.cast(number)
+    return Frame(
+        depth=hits.depth,
+        labels=Labels(objectid=hits.objectid, face=hits.face, u=hits.u, v=hits.v),
+        clean_depth=hits.depth,
+        reason=np.where(np.isfinite(hits.depth), np.uint32(0), np.uint32(NOTHING_THERE)),
+    )
+
+
+def _digest(document: dict[str, object]) -> str:
+    """SHA-256 of the document as canonical JSON: sorted keys, no spaces."""
+    canonical = json.dumps(document, sort_keys=True, separators=(",", ":"), allow_nan=False)
+    return hashlib.sha256(canonical.encode()).hexdigest()

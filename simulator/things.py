@@ -1,0 +1,129 @@
+"""The schema of what is on a scene: people, balls, obstacles.
+
+Lengths are metres, times seconds, speeds metres a second; what is in degrees says so in its name.
+"""
+
+from itertools import pairwise
+from math import dist
+from typing import Annotated, Literal
+
+from pydantic import Field, field_validator, model_validator
+
+from recording.checks import Frozen, nearest_name
+from simulator.body import body_names
+
+FASTEST_WALK = 2.5
+"""Metres a second; whoever is faster runs, and the bodies cannot."""
+
+Positive = Annotated[float, Field(gt=0)]
+Ground = tuple[float, float]
+Point = tuple[float, float, float]
+
+
+class Person(Frozen):
+    """Somebody who walks along a path, waits at its first way-point before and stands at its last after."""
+
+    name: str | None = None
+    """Shown in reports; `person 1` and so on where it is not given."""
+    body: str
+    """A body in `scenes/assets`."""
+    waypoints: Annotated[tuple[Ground, ...], Field(min_length=2)]
+    """Places on the ground (x, y) that are passed, metres."""
+    speed: Annotated[float, Field(gt=0, le=FASTEST_WALK)] | None = None
+    """Metres a second, the same all along; or else `times`."""
+    times: tuple[float, ...] | None = None
+    """When each way-point is passed, seconds after `start`; or else `speed`."""
+    start: float = 0.0
+    """When the first way-point is left, seconds after the first frame; negative: already under way."""
+    phase: float = 0.0
+    """Where in the gait's cycle the walk begins, in cycles: 0 and 1 are the same."""
+
+    @field_validator("body")
+    @classmethod
+    def _known(cls, body: str) -> str:
+        if body not in body_names():
+            raise ValueError(f"expected a body's name, {nearest_name(body, body_names())}")
+        return body
+
+    @model_validator(mode="after")
+    def _path(self) -> "Person":
+        _check_timing(self.waypoints, self.speed, self.times)
+        for (a, b), pace in zip(pairwise(self.waypoints), self._paces(), strict=True):
+            if pace > FASTEST_WALK:
+                raise ValueError(f"from {a} to {b} at {pace:.1f} m/s: people walk at {FASTEST_WALK} m/s at most")
+        return self
+
+    @property
+    def top_speed(self) -> float:
+        """The speed on the fastest stretch, metres a second."""
+        return max(self._paces())
+
+    def _paces(self) -> list[float]:
+        lengths = [dist(a, b) for a, b in pairwise(self.waypoints)]
+        if self.times is None:
+            return [self.speed or 0.0] * len(lengths)
+        return [
+            length / (later - sooner) for length, (sooner, later) in zip(lengths, pairwise(self.times), strict=True)
+        ]
+
+
+class Ball(Frozen):
+    """A ball whose centre follows straight lines between way-points."""
+
+    name: str | None = None
+    """`ball 1` and so on where it is not given."""
+    radius: Positive
+    """Metres."""
+    waypoints: Annotated[tuple[Point, ...], Field(min_length=2)]
+    """Places of the centre, metres."""
+    speed: Positive | None = None
+    """Metres a second, the same all along; or else `times`."""
+    times: tuple[float, ...] | None = None
+    """When each way-point is passed, seconds after `start`; or else `speed`."""
+    start: float = 0.0
+    """When the first way-point is left, seconds after the first frame."""
+
+    @model_validator(mode="after")
+    def _path(self) -> "Ball":
+        _check_timing(self.waypoints, self.speed, self.times)
+        return self
+
+
+class Obstacle(Frozen):
+    """Something that stands still."""
+
+    name: str | None = None
+    """`box 1` and so on where it is not given."""
+    shape: Literal["box", "cylinder", "cone"]
+    size: tuple[Positive, Positive, Positive] | None = None
+    """A box's extent along x, y and z before it is turned, metres."""
+    radius: Positive | None = None
+    """A cylinder's radius, or a cone's at its base, metres."""
+    height: Positive | None = None
+    """A cylinder's or cone's height, metres."""
+    position: Point
+    """The middle of its base, metres."""
+    yaw_deg: float = 0.0
+    """By how much it is turned about the vertical, from x towards y, degrees."""
+
+    @model_validator(mode="after")
+    def _measured(self) -> "Obstacle":
+        wanted = ("size",) if self.shape == "box" else ("radius", "height")
+        given = tuple(key for key in ("size", "radius", "height") if getattr(self, key) is not None)
+        if given != wanted:
+            raise ValueError(f"expected a {self.shape} to have {' and '.join(map(repr, wanted))}, no more, no less")
+        return self
+
+
+def _check_timing(
+    waypoints: tuple[Ground, ...] | tuple[Point, ...], speed: float | None, times: tuple[float, ...] | None
+) -> None:
+    """Raise unless way-points and their timing go together."""
+    if (speed is None) == (times is None):
+        raise ValueError("expected either 'speed' or 'times'" + (", not both" if speed is not None else ""))
+    if times is not None and len(times) != len(waypoints):
+        raise ValueError(f"expected one of 'times' for each of the {len(waypoints)} way-points, not {len(times)}")
+    if times is not None and any(later <= sooner for sooner, later in pairwise(times)):
+        raise ValueError("expected 'times' that grow from way-point to way-point")
+    if times is None and any(a == b for a, b in pairwise(waypoints)):
+        raise ValueError("expected way-points that differ from the one before (to wait, give 'times')")

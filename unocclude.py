@@ -1,0 +1,325 @@
+"""Unocclude: simulate crowds before a depth camera, find what moves together, complete what was hidden.
+
+The command line (`unocclude --help`) and the public names. In Python the verbs are the same, on values
+instead of files:
+
+    import unocclude
+
+    recording = unocclude.simulate("wall", seed=1)
+    motions = unocclude.solve(recording)
+    print(unocclude.evaluate(recording, motions)["completion"]["centre_mean_m"])
+"""
+
+import json
+import sys
+import tomllib
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from cyclopts import App, CycloptsError, Parameter
+from rich.console import Console
+
+from algorithm.pipeline import solve
+from algorithm.settings import Settings, changed_settings, preset_settings, settings_from_file
+from evaluation.doctor import diagnosis
+from evaluation.picture import draw_overview
+from evaluation.scores import check_belongs, evaluate
+from evaluation.summary import summary
+from recording.errors import InputError
+from recording.importing import Calibration, import_images
+from recording.motions import Motions
+from recording.parquet import load_motions, save_motions
+from recording.progress import progress_shown
+from recording.recording import Recording
+from recording.store import load_recording, save_recording
+from recording.verify import verify
+from recording.version import VERSION
+from simulator.scene import load_scene
+from simulator.simulate import picture_size, prepared, simulate, write_simulation
+
+__all__ = [
+    "InputError",
+    "Motions",
+    "Recording",
+    "Settings",
+    "evaluate",
+    "load_motions",
+    "load_recording",
+    "preset_settings",
+    "save_motions",
+    "save_recording",
+    "simulate",
+    "solve",
+    "verify",
+]
+
+messages = Console(stderr=True, soft_wrap=True, highlight=False)
+app = App(
+    name="unocclude",
+    help="Simulate crowds before a depth camera, find what moves together, complete what was hidden.",
+    version=VERSION,
+    help_format="markdown",
+)
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class Common:
+    """What every command takes."""
+
+    quiet: bool = False
+    """No messages and no progress bar."""
+    overwrite: bool = False
+    """Replace results that exist already."""
+
+    def say(self, message: str) -> None:
+        """A message on standard error, unless it is to be quiet."""
+        if not self.quiet:
+            messages.print(message, markup=False)
+
+    def run(self, work: Callable[[], None]) -> None:
+        """Do the work, with progress bars unless it is to be quiet."""
+        if self.quiet:
+            work()
+            return
+        with progress_shown(messages):
+            work()
+
+
+QUIET = Common()
+SETTINGS_HELP = "\n".join(
+    ["Settings for `--set` and `--settings`, with the values of the preset `default`:", ""]
+    + [f"- `{name}` = {field.default}: {field.description}" for name, field in Settings.model_fields.items()]
+)
+Backend = Literal["auto", "llvm", "scalar"]
+Output = Annotated[Path, Parameter(name=["--output", "-o"])]
+
+
+@app.command
+def demo(*, output: Output = Path("demo"), seed: int = 0, common: Common = QUIET) -> None:
+    """Run the main job on the scene `wall`: simulate, solve, evaluate, draw.
+
+    Example: `unocclude demo -o demo`
+
+    Args:
+        output: Folder for the recording, the motions, the scores and the picture.
+        seed: 0 is the scene itself; any other number is the same scene on another day.
+    """
+    simulation = prepared("wall", seed=seed)
+    place = output / simulation.scene.name
+    common.run(lambda: write_simulation(simulation, place, overwrite=common.overwrite))
+    common.say(f"simulated {place}: {simulation.scene.frames} frames, {simulation.clearance.sentence}")
+    solve_command(place, common=common)
+    recording, motions = load_recording(place), load_motions(place / "motions.parquet")
+    found = evaluate(recording, motions)
+    (output / "scores.json").write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
+    draw_overview(recording, motions, output / "overview.png")
+    print(summary(found))
+    print(f"pictures: {output / 'overview.png'}")
+
+
+@app.command(name="simulate")
+def simulate_command(
+    *scenes: str,
+    output: Output,
+    seed: int = 0,
+    frames: int | None = None,
+    size: str | None = None,
+    sensor: str | None = None,
+    backend: Backend = "auto",
+    common: Common = QUIET,
+) -> None:
+    """Render scenes to recordings `OUTPUT/<name>/`, with the truth about everything hidden.
+
+    Example: `unocclude simulate wall -o recordings --seed 1`
+
+    Args:
+        scenes: Names of shipped scenes, or paths of TOML files.
+        output: Folder for the recordings.
+        seed: 0 is the scene itself; any other number is the same scene on another day.
+        frames: Number of frames in place of the scene's own.
+        size: Picture size in pixels, `640x480`, or `2x` for twice the scene's own.
+        sensor: Sensor preset in place of the scene's own.
+        backend: Ray caster: compiled (`llvm`), interpreted (`scalar`), or what works here.
+    """
+    if not scenes:
+        raise InputError("expected at least one scene, got none: try 'unocclude simulate wall -o recordings'")
+    for name in scenes:
+        pixels = None if size is None else picture_size(size, load_scene(name))
+        simulation = prepared(name, seed=seed, size=pixels, frames=frames, sensor=sensor)
+        place = output / simulation.scene.name
+        common.run(lambda: write_simulation(simulation, place, backend=backend, overwrite=common.overwrite))  # noqa: B023 (run at once)
+        common.say(f"simulated {place}: {simulation.scene.frames} frames, {simulation.clearance.sentence}")
+
+
+@app.command(name="import")
+def import_command(
+    source: Path,
+    *,
+    output: Output,
+    fx: float,
+    fy: float,
+    cx: float,
+    cy: float,
+    fps: float,
+    scale: float = 0.001,
+    pixel_centre: float = 0.0,
+    pattern: str = "*.png",
+    masks: str | None = None,
+    common: Common = QUIET,
+) -> None:
+    """Make a recording of a folder of 16-bit depth images.
+
+    Example: `unocclude import depth/ --scale 0.001 --fx 365 --fy 365 --cx 256 --cy 212 --fps 30 -o recording`
+
+    Args:
+        source: Folder of the images; they are taken in the order of the numbers in their names.
+        output: The recording to make.
+        fx: Focal length along the columns, pixels.
+        fy: Focal length along the rows, pixels.
+        cx: Column of the principal point, pixels.
+        cy: Row of the principal point, pixels.
+        fps: Frames a second.
+        scale: Metres of one unit of the stored numbers; TUM RGB-D has 0.0002.
+        pixel_centre: Where the calibration has the centre of pixel (0, 0): 0, as most do, or 0.5.
+        pattern: Names of the depth images.
+        masks: Names of images of object ids, one for each depth image, for the evaluation.
+    """
+    calibration = Calibration(fx=fx, fy=fy, cx=cx, cy=cy, fps=fps, scale=scale, pixel_centre=pixel_centre)
+
+    def work() -> None:
+        overwrite = common.overwrite
+        import_images(source, output, calibration=calibration, pattern=pattern, masks=masks, overwrite=overwrite)
+
+    common.run(work)
+    common.say(f"imported {load_recording(output).metadata.frames} frames to {output}")
+
+
+@app.command(name="solve", help_epilogue=SETTINGS_HELP)
+def solve_command(
+    recording: Path,
+    *,
+    output: Annotated[Path | None, Parameter(name=["--output", "-o"])] = None,
+    preset: Literal["default", "paper"] = "default",
+    settings: Path | None = None,
+    set_: Annotated[tuple[str, ...], Parameter(name="--set", negative="")] = (),
+    common: Common = QUIET,
+) -> None:
+    """Find the motions in a recording and complete them where they were hidden.
+
+    Example: `unocclude solve recordings/wall --preset paper --set eps3=5`
+
+    Args:
+        recording: The recording's folder.
+        output: The Parquet file to write; `motions.parquet` in the recording's folder by default.
+        preset: Settings to start from: the best that we know, or the paper's.
+        settings: TOML file with settings that replace the preset's.
+        set_: `KEY=VALUE`, a setting that replaces the others'; may be given several times.
+    """
+    place = output or recording / "motions.parquet"
+    if place.exists() and not common.overwrite:
+        raise InputError(f"{place} exists already: choose another place, or pass --overwrite to replace it")
+    found = load_recording(recording)
+    chosen = preset_settings(preset, of_scene=(found.metadata.scene or {}).get("paper"))
+    if settings is not None:
+        chosen = settings_from_file(chosen, settings)
+    chosen = changed_settings(chosen, dict(map(_key_and_value, set_)), source="--set")
+
+    def work() -> None:
+        motions = solve(found, chosen)
+        save_motions(motions, place, overwrite=common.overwrite)
+        total = motions.making.seconds["total"]
+        common.say(f"solved {place}: {len(motions.motion_ids)} motions in {total:.1f} s")
+
+    common.run(work)
+
+
+@app.command(name="evaluate")
+def evaluate_command(
+    recording: Path,
+    motions: Path | None = None,
+    *,
+    json_: Annotated[bool, Parameter(name="--json")] = False,
+    common: Common = QUIET,
+) -> None:
+    """Score motions against the truth.
+
+    Example: `unocclude evaluate recordings/wall --json`
+
+    Args:
+        recording: The recording's folder.
+        motions: The Parquet file; `motions.parquet` in the recording's folder by default.
+        json_: One JSON object in place of a table.
+    """
+    truth, answer = load_recording(recording), load_motions(motions or recording / "motions.parquet")
+    warning = check_belongs(truth, answer)
+    if warning is not None:
+        common.say(f"warning: {warning}")
+    found = evaluate(truth, answer)
+    print(json.dumps(found, allow_nan=False) if json_ else summary(found))
+
+
+@app.command(name="verify")
+def verify_command(recording: Path, *, common: Common = QUIET) -> None:
+    """Check a simulated recording against itself; exit status 1 where a bound is passed.
+
+    Example: `unocclude verify recordings/wall`
+
+    Args:
+        recording: The recording's folder.
+    """
+    report = verify(load_recording(recording))
+    print(report.text)
+    if not report.passes:
+        sys.exit(1)
+
+
+@app.command(name="draw")
+def draw_command(recording: Path, motions: Path | None = None, *, output: Output, common: Common = QUIET) -> None:
+    """Draw a solved recording: frames, segments, representatives, completed motion.
+
+    Example: `unocclude draw recordings/wall -o wall.png`
+
+    Args:
+        recording: The recording's folder.
+        motions: The Parquet file; `motions.parquet` in the recording's folder by default.
+        output: The picture, PNG or SVG by its ending.
+    """
+    answer = load_motions(motions or recording / "motions.parquet")
+    draw_overview(load_recording(recording), answer, output, overwrite=common.overwrite)
+    common.say(f"drawn {output}")
+
+
+@app.command
+def doctor() -> None:
+    """Tell what this machine has: versions, rendering backend, cores, and what is missing.
+
+    Example: `unocclude doctor`
+    """
+    print(diagnosis())
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Run the command line: exit status 0 done, 1 a check failed, 2 the input or the arguments are wrong."""
+    try:
+        app(arguments, exit_on_error=False, print_error=False)
+    except (InputError, CycloptsError) as error:
+        messages.print("unocclude: " + " ".join(str(error).split()), markup=False)
+        sys.exit(2)
+
+
+def _key_and_value(text: str) -> tuple[str, Any]:
+    """A setting as the command line has it: numbers and booleans as in TOML, else text."""
+    key, separator, value = text.partition("=")
+    if not separator:
+        raise InputError(f"--set: expected KEY=VALUE, got {text!r}")
+    try:
+        return key, tomllib.loads(f"value = {value}")["value"]
+    except tomllib.TOMLDecodeError:
+        return key, value
+
+
+if __name__ == "__main__":
+    main()
