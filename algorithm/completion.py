@@ -79,11 +79,15 @@ def _continued_into_holes(trajectories: Trajectories, curve: Curve, joins: Joins
     alone_end[joins[0]] = False
     alone_begin = np.ones(trajectories.count, bool)
     alone_begin[joins[1]] = False
+    last_row = trajectories.first_row + trajectories.length - 1
+    begin, end = trajectories.first_frame, trajectories.last_frame
+    found = holes(curve)
+    earlier = [-1, *(last for _, last in found)]  # A point enters the next hole only, and came out of the last one.
+    later = [*(first for first, _ in found), np.inf][1:]
     parts = []
-    for first, last in holes(curve):
-        ended = alone_end & (trajectories.last_frame >= first - border_frames) & (trajectories.last_frame < last)
-        begun = alone_begin & (trajectories.first_frame <= last + border_frames) & (trajectories.first_frame > first)
-        last_row = trajectories.first_row + trajectories.length - 1
+    for (first, last), previous, following in zip(found, earlier, later, strict=False):
+        ended = alone_end & (end > previous) & (end >= first - border_frames) & (end < last)
+        begun = alone_begin & (begin < following) & (begin <= last + border_frames) & (begin > first)
         parts.append(_carried(trajectories, curve, np.flatnonzero(ended), last_row, (None, last)))
         parts.append(_carried(trajectories, curve, np.flatnonzero(begun), trajectories.first_row, (first, None)))
     return parts

@@ -13,6 +13,8 @@ FlowMethod = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 _SMALLEST_SIDE = 32
 """DIS and DeepFlow need some pixels for their pyramids; smaller images are padded with emptiness."""
+_MARGIN = 16
+"""Pixels of emptiness around what is not empty, so that flow may begin and end there."""
 
 
 def flow_b_from_a(
@@ -23,16 +25,32 @@ def flow_b_from_a(
 ) -> Float32[np.ndarray, "row column 2"]:
     """Where image b shows what image a shows: the motion (column, row) of every pixel of a, in pixels.
 
+    Only the part of the picture where either image is not empty is paid for; elsewhere the flow is zero.
     Two equal images give exactly zero.
     """
-    height, width = image_a.shape
+    flow = np.zeros((*image_a.shape, 2), np.float32)
     if np.array_equal(image_a, image_b):
-        return np.zeros((height, width, 2), np.float32)
-    below, right = max(0, _SMALLEST_SIDE - height), max(0, _SMALLEST_SIDE - width)
-    padded = [
-        cv2.copyMakeBorder(image, 0, below, 0, right, cv2.BORDER_CONSTANT, value=0) for image in (image_a, image_b)
-    ]
-    return _METHODS[method](*padded)[:height, :width].astype(np.float32)
+        return flow
+    window = _occupied_window(image_a, image_b)
+    a, b = _padded(image_a[window]), _padded(image_b[window])
+    height, width = image_a[window].shape
+    flow[window] = _METHODS[method](a, b)[:height, :width]
+    return flow
+
+
+def _occupied_window(image_a: np.ndarray, image_b: np.ndarray) -> tuple[slice, slice]:
+    """The rectangle that holds every pixel that is not empty in both images, with a margin."""
+    occupied = (image_a > 0) | (image_b > 0)
+    sides = []
+    for axis in (1, 0):
+        filled = np.flatnonzero(occupied.any(axis=axis))
+        sides.append(slice(max(0, int(filled[0]) - _MARGIN), int(filled[-1]) + 1 + _MARGIN))
+    return sides[0], sides[1]
+
+
+def _padded(image: np.ndarray) -> np.ndarray:
+    below, right = (max(0, _SMALLEST_SIDE - side) for side in image.shape)
+    return cv2.copyMakeBorder(image, 0, below, 0, right, cv2.BORDER_CONSTANT, value=0)
 
 
 def _dis(image_a: np.ndarray, image_b: np.ndarray) -> np.ndarray:

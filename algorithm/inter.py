@@ -4,11 +4,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 from numpy.polynomial import chebyshev
 from scipy.optimize import linear_sum_assignment
 
 from algorithm.representative import Curve
+from algorithm.trajectories import Trajectories
+from recording.camera import Camera
 
 LOWEST_DEGREE, HIGHEST_DEGREE = 2, 7
 
@@ -67,13 +69,19 @@ def smoothest_polynomial(before: Curve, after: Curve, *, eps6_m: float) -> Polyn
 
 
 def linked(
-    curves: Sequence[Curve], *, eps6_m: float, ends_frames: float, longest_frames: float
+    curves: Sequence[Curve],
+    weight: Float[np.ndarray, "curve"],
+    *,
+    eps6_m: float,
+    ends_frames: float,
+    longest_frames: float,
 ) -> Mapping[tuple[int, int], Polynomial]:
     """Which curve goes on as which, and along which polynomial: the assignment of least total cost.
 
     Curve b may follow a if a ends before b begins, at most `longest_frames` apart, and a polynomial
-    through the last and the first `ends_frames` of them has an error below epsilon 6. A curve that finds
-    no partner stays alone: people enter and leave.
+    through the last and the first `ends_frames` of them has an error below epsilon 6. A curve may also
+    stay alone at either end, for people enter and leave; that costs the more the greater its `weight`
+    (0 to 1) is, so that a body is not left alone for the sake of a scrap.
     """
     candidates: dict[tuple[int, int], Polynomial] = {}
     for i, before in enumerate(curves):
@@ -82,14 +90,34 @@ def linked(
                 found = smoothest_polynomial(*_ends(before, after, ends_frames), eps6_m=eps6_m)
                 if found is not None:
                     candidates[i, j] = found
-    return {pair: candidates[pair] for pair in _assigned(candidates, len(curves), eps6_m)}
+    alone = eps6_m * np.exp(HIGHEST_DEGREE) * weight
+    return {pair: candidates[pair] for pair in _assigned(candidates, alone)}
 
 
-def _assigned(candidates: Mapping[tuple[int, int], Polynomial], count: int, eps6_m: float) -> list[tuple[int, int]]:
-    """The links of least total cost; staying alone costs more than any candidate, and less than a non-candidate."""
-    alone = eps6_m * np.exp(HIGHEST_DEGREE)
-    cost = np.full((count, 2 * count), 4 * alone)
-    cost[:, count:][np.diag_indices(count)] = alone
+def seen_areas(
+    trajectories: Trajectories, segment: Int[np.ndarray, "trajectory"], *, camera: Camera
+) -> Float[np.ndarray, "segment"]:
+    """How much was seen of each segment, from 0 to 1 for the most: its area over all its frames.
+
+    The area behind a pixel grows with the square of the distance, so who is far away counts as much.
+    """
+    label = segment[trajectories.trajectory]
+    seen = label >= 0
+    distance = np.linalg.norm(trajectories.position[seen] - camera.position, axis=1)
+    area = np.bincount(label[seen], distance**2)
+    return area / area.max(initial=1e-12)
+
+
+def _assigned(
+    candidates: Mapping[tuple[int, int], Polynomial], alone: Float[np.ndarray, "curve"]
+) -> list[tuple[int, int]]:
+    """The links of least total cost, when curve i stays alone at either end for `alone[i]`."""
+    count = len(alone)
+    never = 4.0 * (alone.sum() + sum(found.cost for found in candidates.values()) + 1.0)
+    cost = np.full((2 * count, 2 * count), never)
+    cost[:count, count:][np.diag_indices(count)] = alone
+    cost[count:, :count][np.diag_indices(count)] = alone
+    cost[count:, count:] = 0.0
     for pair, polynomial in candidates.items():
         cost[pair] = polynomial.cost
     rows, columns = linear_sum_assignment(cost)

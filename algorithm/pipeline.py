@@ -4,13 +4,14 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
-from jaxtyping import Float32, Int
+from jaxtyping import Float32, Int, UInt8
 
 from algorithm import affinity, clustering
 from algorithm.completion import completed
-from algorithm.depth_image import depth_range, grey_image, shading_image
+from algorithm.depth_image import continued_behind, depth_range, grey_image, shading_image
 from algorithm.flow import flow_b_from_a
-from algorithm.inter import chain_curve, chains, linked, trusted
+from algorithm.fragments import absorbed
+from algorithm.inter import chain_curve, chains, linked, seen_areas, trusted
 from algorithm.lifting import lifted
 from algorithm.matching import Pairs, matched_pixels
 from algorithm.representative import representative
@@ -26,6 +27,7 @@ from recording.progress import tracked
 from recording.recording import Recording
 
 Depths = Sequence[Float32[np.ndarray, "row column"]]
+Image = UInt8[np.ndarray, "row column"]
 Segments = Int[np.ndarray, "trajectory"]
 
 
@@ -39,13 +41,16 @@ def solve(recording: Recording, settings: Settings | None = None) -> Motions:
     sensed = [frame.depth for frame in recording.frames]
     spacing_m = mean_point_spacing(sensed, camera=recording.camera)
     depths = moving_depths(sensed, settings) if settings.remove_static else sensed
-    matches = matched_frames(depths, recording, settings, spacing_m, watch)
+    with watch.stage("flow"):
+        images = flow_images(depths, sensed, settings, recording.camera)
+    matches = matched_frames(depths, images, recording, settings, spacing_m, watch)
     with watch.stage("trajectories"):
         trajectories = chained(depths, matches, camera=recording.camera)
         trajectories = lasting(trajectories, extent_m=settings.eps2, frames=settings.shortest_frames)
     segments = segmented(trajectories, settings, spacing_m, watch)
     with watch.stage("completion"):
-        solution = completed_motions(trajectories, segments, settings, spacing_m, recording.fps)
+        segments = absorbed(trajectories, segments, settings, fps=recording.fps)
+        solution = completed_motions(trajectories, segments, settings, spacing_m, recording)
     return motions_of(solution, recording, settings, watch.by_stage())
 
 
@@ -55,12 +60,23 @@ def moving_depths(depths: Depths, settings: Settings) -> list[Float32[np.ndarray
     return [np.where(still.moving(depth), depth, np.float32(np.nan)) for depth in depths]
 
 
+def flow_images(depths: Depths, sensed: Depths, settings: Settings, camera: Camera) -> list[Image]:
+    """What the flow sees of every frame (step 0)."""
+    if settings.image == "grey":
+        within = depth_range(depths)
+        images = [grey_image(depth, within=within) for depth in depths]
+    else:
+        near = settings.similar_depth_m
+        images = [shading_image(depth, camera=camera, similar_depth_m=near) for depth in depths]
+    if settings.remove_static:
+        images = [continued_behind(*views) for views in zip(images, depths, sensed, strict=True)]
+    return images
+
+
 def matched_frames(
-    depths: Depths, recording: Recording, settings: Settings, spacing_m: float, watch: Stopwatch
+    depths: Depths, images: list[Image], recording: Recording, settings: Settings, spacing_m: float, watch: Stopwatch
 ) -> list[Pairs]:
-    """The matches of every pair of consecutive frames (steps 0 to 3)."""
-    within = depth_range(depths)
-    images = [_image(depth, recording.camera, settings, within) for depth in depths]
+    """The matches of every pair of consecutive frames (steps 1 to 3)."""
     matches = []
     for a in tracked(range(len(depths) - 1), "flow and matches", total=len(depths) - 1):
         pair, pictures = (depths[a], depths[a + 1]), (images[a], images[a + 1])
@@ -100,16 +116,20 @@ def segmented(trajectories: Trajectories, settings: Settings, spacing_m: float, 
 
 
 def completed_motions(
-    trajectories: Trajectories, segments: Segments, settings: Settings, spacing_m: float, fps: float
+    trajectories: Trajectories, segments: Segments, settings: Settings, spacing_m: float, recording: Recording
 ) -> Solution:
     """Segments joined into motions, and every point's places while it was hidden (steps 7 to 9)."""
+    fps = recording.fps
     curves = [
         representative(trajectories.chosen(segments == segment), drift_frames=settings.drift_seconds * fps)
         for segment in range(int(segments.max(initial=-1)) + 1)
     ]
     ends_frames, longest_frames = settings.ends_seconds * fps, settings.longest_hole_seconds * fps
     ends = [trusted(curve, share=settings.faint_share, window_frames=round(ends_frames)) for curve in curves]
-    links = linked(ends, eps6_m=settings.eps6, ends_frames=ends_frames, longest_frames=longest_frames)
+    weight = np.ones(len(curves))
+    if settings.spare_scraps:
+        weight = seen_areas(trajectories, segments, camera=recording.camera)
+    links = linked(ends, weight, eps6_m=settings.eps6, ends_frames=ends_frames, longest_frames=longest_frames)
     motions = []
     for chain in chains(links, len(curves)):
         path = [links[pair] for pair in pairwise(chain)]
@@ -125,10 +145,3 @@ def completed_motions(
         )
         motions.append(Motion(segments=tuple(chain), curve=curve, members=members, completion=completion))
     return Solution(trajectories=trajectories, segments=segments, motions=tuple(motions), links=links)
-
-
-def _image(depth: np.ndarray, camera: Camera, settings: Settings, within: tuple[float, float]) -> np.ndarray:
-    """What the flow sees of a frame (step 0)."""
-    if settings.image == "grey":
-        return grey_image(depth, within=within)
-    return shading_image(depth, camera=camera, similar_depth_m=settings.similar_depth_m)

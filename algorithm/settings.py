@@ -61,12 +61,17 @@ class Settings(Frozen):
 
     clustering: ClusteringName = "normalised_cut"
     """How the number of segments comes about: `eigengap`, or cuts while they are cheap (`normalised_cut`)."""
-    cut_below: Share = 0.03
+    cut_below: Share = 0.01
     """A segment is cut in two while the normalised cut costs less than this (for `normalised_cut`)."""
     most_segments: Count = 60
     """Segments that `eigengap` may find in one connected component."""
     eps4: Annotated[float, Field(ge=0)] = 20
     """Trajectories: a smaller segment is noise (paper: epsilon 4)."""
+
+    fragment_share: Share = 0.25
+    """A segment with at most this share of a near one's points is a limb of it; 0 = none is (paper)."""
+    fragment_drift_m_per_s: Positive = 0.8
+    """Metres a second: a segment that leaves the other faster is no limb of it."""
 
     drift_seconds: Annotated[float, Field(ge=0)] = 0.4
     """Seconds over which a representative is drawn to the centres of mass of well seen frames; 0 = never (paper)."""
@@ -88,6 +93,8 @@ class Settings(Frozen):
     """Seconds of both representatives, next to the hole, that the polynomial is fitted to."""
     longest_hole_seconds: Positive = 3.0
     """Seconds: a longer hole is not bridged."""
+    spare_scraps: bool = True
+    """Leaving a segment unlinked costs as much as it was seen, so that no body is left alone for a scrap."""
 
 
 _PAPER: dict[str, Any] = {
@@ -103,12 +110,14 @@ _PAPER: dict[str, Any] = {
     "eps4": 20,
     "eps5": 10,
     "clustering": "eigengap",
+    "fragment_share": 0.0,
     "drift_seconds": 0.0,
     "faint_share": 0.0,
     "alignment": "rigid",
     "complete_unmatched": False,
     "ends_seconds": 1000.0,
     "longest_hole_seconds": 1000.0,
+    "spare_scraps": False,
 }
 """The paper's choices, with the epsilons that Table 1 gives for `wall`."""
 

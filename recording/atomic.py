@@ -30,6 +30,8 @@ def whole_folder(path: Path, *, overwrite: bool = False) -> Iterator[Path]:
     stays in its place until the new one is complete.
     """
     _refuse_existing(path, overwrite=overwrite)
+    if path.exists() and not path.is_dir():
+        raise InputError(f"{path}: expected a folder to replace, got a file: choose another place")
     partial = _partial_name(path)
     with _usable(path):
         shutil.rmtree(partial, ignore_errors=True)

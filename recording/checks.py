@@ -85,7 +85,10 @@ def _sentence(model: type[BaseModel], error: ErrorDetails) -> str:
     if error["type"] == "missing":
         return f"key {key!r} is missing"
     message = error["msg"].removeprefix("Value error, ")
-    return f"{key}: {message[0].lower()}{message[1:]}, got {_shortened(error['input'])}"
+    sentence = f"{key}: {message[0].lower()}{message[1:]}"
+    if not location and isinstance(error["input"], dict):
+        return sentence  # The whole document says nothing that the user did not know.
+    return f"{sentence}, got {_shortened(error['input'])}"
 
 
 def _shortened(value: object) -> str:

@@ -32,7 +32,7 @@ def read_frame(path: Path, *, shape: tuple[int, int]) -> Frame:
     depth = _depth(path, channels, "Z")
     if depth is None:
         raise InputError(f"{path}: expected a channel 'Z', got {sorted(channels)}: is it a depth frame?")
-    for name, kind in _LABELS.items():
+    for name, kind in {**_LABELS, "reason": np.uint32}.items():
         if name in channels and channels[name].dtype != kind:
             raise InputError(f"{path}: expected channel {name!r} as {np.dtype(kind)}, got {channels[name].dtype}")
     labels = None

@@ -1,5 +1,6 @@
 """Real depth recordings: a folder of 16-bit depth images, as TUM RGB-D and many others have it."""
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -71,7 +72,7 @@ def import_images(
     masks: str | None = None,
     overwrite: bool = False,
 ) -> Metadata:
-    """Make a recording of the depth images in `source`, in the order of their names.
+    """Make a recording of the depth images in `source`, in the order of the numbers in their names.
 
     `masks` is the pattern of images, one for each depth image in the order of their names, whose numbers
     are object ids, 0 for none.
@@ -116,12 +117,18 @@ def _frames(
 def _files(source: Path, pattern: str, what: str) -> list[Path]:
     if not source.is_dir():
         raise InputError(f"{source}: expected a folder of {what}, but there is none")
-    if Path(pattern).is_absolute() or ".." in Path(pattern).parts:
+    if not pattern or Path(pattern).is_absolute() or ".." in Path(pattern).parts:
         raise InputError(f"pattern {pattern!r}: expected file names within the folder, such as 'depth_*.png'")
-    found = sorted(path for path in source.glob(pattern) if path.is_file())
+    found = sorted((path for path in source.glob(pattern) if path.is_file()), key=_natural)
     if not found:
         raise InputError(f"{source}: expected {what} named like {pattern!r}, found none: pass another pattern")
     return found
+
+
+def _natural(path: Path) -> tuple[list[str | int], Path]:
+    """A key that sorts by the numbers in a name: `depth_2` comes before `depth_10`."""
+    parts = re.split(r"([0-9]+)", str(path))
+    return [int(part) if index % 2 else part for index, part in enumerate(parts)], path
 
 
 def _numbers(path: Path) -> np.ndarray:

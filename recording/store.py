@@ -29,13 +29,15 @@ def write_recording(
     overwrite: bool = False,
 ) -> None:
     """Write a recording while its frames are being made; the folder appears when all of it is there."""
+    if folder.is_dir() and any(folder.iterdir()) and not (folder / "recording.json").is_file():
+        raise InputError(f"{folder}: expected a recording to replace, got a folder of something else: choose another")
     camera = metadata.as_camera()
     with whole_folder(folder, overwrite=overwrite) as partial:
         (partial / "frames").mkdir()
         count = 0
         for number, (frame, xray) in enumerate(frames):
             write_frame(partial / "frames" / frame_name(number), frame, camera=camera, fps=metadata.fps)
-            if xray is not None:
+            if xray:  # OpenEXR has no file without channels.
                 _write_xray(partial / "xray" / frame_name(number), xray)
             count = number + 1
         if count != metadata.frames:
@@ -142,9 +144,9 @@ class _StoredTruth(Mapping[int, MeshSequence]):
     def __init__(self, path: Path) -> None:
         self._path = path
         try:
-            self._arrays = np.load(path, allow_pickle=False)
-            names = self._arrays.files
-        except (OSError, ValueError, EOFError, AttributeError, zipfile.BadZipFile):
+            with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
+                names = arrays.files
+        except (OSError, ValueError, EOFError, TypeError, zipfile.BadZipFile):  # TypeError: a bare array.
             raise InputError(f"{path}: expected a NumPy .npz archive: make the recording again") from None
         self._ids = sorted(int(name.removeprefix("faces_")) for name in names if name.startswith("faces_"))
         self._mesh = lru_cache(maxsize=None)(self._read)
@@ -162,7 +164,8 @@ class _StoredTruth(Mapping[int, MeshSequence]):
 
     def _read(self, objectid: int) -> MeshSequence:
         try:
-            faces, vertices = (self._arrays[f"{name}_{objectid}"] for name in ("faces", "vertices"))
+            with self._path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
+                faces, vertices = (arrays[f"{name}_{objectid}"] for name in ("faces", "vertices"))
         except (KeyError, ValueError, OSError, zipfile.BadZipFile):
             raise InputError(f"{self._path}: the mesh of object {objectid} is damaged: make it again") from None
         return MeshSequence(faces=faces.astype(np.int32), vertices=vertices.astype(np.float32))
