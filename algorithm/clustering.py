@@ -24,6 +24,7 @@ def cut_while_cheap(affinity: sparse.csr_array, *, cut_below: float, smallest: i
     cheapest, as long as that costs less than `cut_below` and leaves `smallest` members on both sides. So
     the number of segments comes out of the affinities; with 0 the components stay whole.
     """
+    smallest = max(smallest, 1)
     label = np.zeros(affinity.shape[0], int)
     found = 0
     waiting = list(_components(affinity))
@@ -68,7 +69,9 @@ def without_small(label: Labels, *, smallest: float) -> Labels:
     return np.where(kept[index], np.cumsum(kept)[index] - 1, -1)
 
 
-def followers(trajectories: Trajectories, sample: Bool[np.ndarray, "trajectory"], label: Labels) -> Labels:
+def followers(
+    trajectories: Trajectories, sample: Bool[np.ndarray, "trajectory"], label: Int[np.ndarray, "sampled"]
+) -> Labels:
     """The labels of all trajectories, when only a sample was clustered (epsilon 5).
 
     A trajectory out of the sample takes the label of its nearest sampled neighbour in its middle frame;
@@ -96,6 +99,8 @@ def normalised_cut(affinity: sparse.csr_array, side: np.ndarray) -> float:
 
 
 def _components(affinity: sparse.csr_array) -> Iterator[Int[np.ndarray, "member"]]:
+    if not affinity.shape[0]:
+        return
     _, component = connected_components(affinity, directed=False)
     order = np.argsort(component, kind="stable")
     yield from np.split(order, np.flatnonzero(np.diff(component[order])) + 1)

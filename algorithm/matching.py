@@ -6,7 +6,7 @@ from jaxtyping import Float, Float32, Int
 from algorithm.lifting import SceneFlow, pixel_index
 from recording.camera import Camera, pixel_grid
 
-Pairs = tuple[Int[np.ndarray, "match"], Int[np.ndarray, "match"]]
+Pairs = tuple[Int[np.ndarray, "_match"], Int[np.ndarray, "_match"]]
 """Flat pixel numbers (row * width + column) in frame a and in frame b."""
 
 
@@ -45,7 +45,7 @@ def matched_pixels(
 
 
 def _one_to_one(
-    source: Int[np.ndarray, "match"], goal: Int[np.ndarray, "match"], miss: Float[np.ndarray, "match"]
+    source: Int[np.ndarray, "candidate"], goal: Int[np.ndarray, "candidate"], miss: Float[np.ndarray, "candidate"]
 ) -> Pairs:
     """For each goal the source of the smallest miss; of equal ones the first."""
     order = np.lexsort((source, miss, goal))

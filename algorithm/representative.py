@@ -49,8 +49,8 @@ def representative(trajectories: Trajectories, *, drift_frames: float = 0.0) -> 
     vectors.) Frames between which no point was followed take the displacement of their neighbours.
 
     Summed displacements drift. With `drift_frames` above 0 the curve is drawn to the centres of mass of
-    the well seen frames: the difference, weighted by the square of the number of points, is smoothed with
-    a Gaussian of that many frames and added.
+    the frames with more than half as many points as the densest, where it is the body's and not that of
+    what is left in sight: the difference is smoothed with a Gaussian of that many frames and added.
     """
     first, last = int(trajectories.frame.min()), int(trajectories.frame.max())
     moment = trajectories.frame - first
@@ -85,7 +85,7 @@ def _mean_by(group: np.ndarray, value: np.ndarray, groups: int) -> np.ndarray:
 
 
 def _smoothed_difference(difference: np.ndarray, count: np.ndarray, sigma: float) -> np.ndarray:
-    weight = (count / count.max()) ** 2
+    weight = np.clip(2.0 * count / count.max() - 1.0, 0.0, 1.0) ** 2
     known = np.where(np.isfinite(difference), difference, 0.0) * weight[:, None]
     smooth = gaussian_filter1d(known, sigma, axis=0, mode="constant")
     return smooth / np.maximum(gaussian_filter1d(weight, sigma, mode="constant"), 1e-12)[:, None]

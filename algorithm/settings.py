@@ -65,7 +65,7 @@ class Settings(Frozen):
     """A segment is cut in two while the normalised cut costs less than this (for `normalised_cut`)."""
     most_segments: Count = 60
     """Segments that `eigengap` may find in one connected component."""
-    eps4: Annotated[float, Field(ge=0)] = 20
+    eps4: Annotated[float, Field(ge=0)] = 20.0
     """Trajectories: a smaller segment is noise (paper: epsilon 4)."""
 
     fragment_share: Share = 0.25

@@ -40,11 +40,13 @@ class Background:
 def background(depths: Sequence[Float32[np.ndarray, "row column"]], *, tolerance_m: float) -> Background:
     """What stands still in the recording.
 
-    A pixel's usual depth is the median of its returns. It is background if at least half of the returns
-    agree with it, and if they do so over at least half of the recording's time: someone who passes
-    agrees with himself for a moment only.
+    A pixel's usual depth is the median of its returns, less each frame's wobble: else pixels that were
+    hidden in other frames would take their depth from other shifts. It is background if at least half of
+    the returns agree with it, and if they do so over at least half of the recording's time: someone who
+    passes agrees with himself for a moment only.
     """
-    usual = usual_depth(depths)
+    rough = Background(depth=usual_depth(depths), tolerance_m=tolerance_m)
+    usual = usual_depth([depth - np.float32(rough.wobble(depth)) for depth in depths])
     first = np.full(usual.shape, len(depths))
     last = np.full(usual.shape, -1)
     agreeing = np.zeros(usual.shape, int)

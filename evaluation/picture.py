@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from algorithm.depth_image import DepthRange, depth_range
 from evaluation.visibility import visibility_of
 from recording.atomic import whole_file
 from recording.camera import Camera, transformed
@@ -25,18 +26,19 @@ _DOTS = 60_000
 def draw_overview(recording: Recording, motions: Motions, path: Path, *, overwrite: bool = True) -> None:
     """Frames, segments, representatives and completed motion of a recording, as PNG or SVG by the ending.
 
-    Above: depth at five moments, with the observed points in the colours of their motions. Below: all
-    observed points in the colours of their segments; the representatives, completed parts dotted, in the
-    picture and from above, truth in grey where it is known; all points, the completed ones paler.
+    Above: depth at five moments, with the points in the colours of their motions, the completed ones paler.
+    Below: all observed points in the colours of their segments; the representatives, completed parts
+    dotted, in the picture and from above, truth in grey where it is known; all points, completed ones paler.
     """
     if path.suffix not in (".png", ".svg"):
         raise InputError(f"{path}: expected a picture that ends in .png or .svg")
     with mpl.rc_context({"font.size": 9, "svg.hashsalt": "unocclude"}):
         figure = Figure(figsize=(15, 6.6), layout="constrained")
-        above, below = np.ravel(figure.subfigures(2, 1, height_ratios=(1, 1.25)))
+        above, below = np.asarray(figure.subfigures(2, 1, height_ratios=(1, 1.25)))
         moments = np.unique(np.linspace(0, recording.metadata.frames - 1, _FRAMES_SHOWN + 2).round().astype(int)[1:-1])
+        within = depth_range([recording.frames[int(frame)].depth for frame in moments])
         for axes, frame in zip(above.subplots(1, len(moments), squeeze=False)[0], moments, strict=True):
-            _draw_frame(axes, recording, motions, int(frame))
+            _draw_frame(axes, recording, motions, int(frame), within)
         panels = below.subplots(1, 4)
         _draw_segments(panels[0], recording.camera, motions)
         curves = motions.representatives or mean_places(motions)
@@ -48,11 +50,12 @@ def draw_overview(recording: Recording, motions: Motions, path: Path, *, overwri
             figure.savefig(partial, format=kind, dpi=110, metadata={"Date": None} if kind == "svg" else None)
 
 
-def _draw_frame(axes: Axes, recording: Recording, motions: Motions, frame: int) -> None:
+def _draw_frame(axes: Axes, recording: Recording, motions: Motions, frame: int, within: DepthRange) -> None:
     depth = recording.frames[frame].depth
-    axes.imshow(depth, cmap="gray_r", extent=(0, depth.shape[1], depth.shape[0], 0))
-    rows = (motions.frame == frame) & motions.observed & (motions.motion != NOISE)
-    _dots(axes, motions.column_row[rows], _colours(motions.motion[rows]), size=2.0, alpha=0.6)
+    nearest, farthest = within
+    extent = (0, depth.shape[1], depth.shape[0], 0)
+    axes.imshow(depth, cmap="gray", extent=extent, alpha=0.7, vmin=nearest - 0.1, vmax=farthest + 0.1)
+    _draw_points(axes, recording.camera, motions.rows(motions.frame == frame), alphas=(0.25, 0.8), size=2.5)
     axes.set_title(f"frame {frame}, {frame / recording.fps:.2f} s")
     _as_picture(axes, recording.camera)
 
@@ -90,12 +93,17 @@ def _draw_plan(axes: Axes, recording: Recording, curves: tuple[Representative, .
 
 
 def _draw_completed(axes: Axes, camera: Camera, motions: Motions) -> None:
-    for observed, alpha in ((False, 0.06), (True, 0.4)):
-        rows = np.flatnonzero((motions.motion != NOISE) & (motions.observed == observed))
-        column_row, _ = camera.pixel_from_world(motions.position[rows].astype(np.float64))
-        _dots(axes, column_row, _colours(motions.motion[rows]), size=0.6, alpha=alpha)
+    _draw_points(axes, camera, motions, alphas=(0.06, 0.4), size=0.6)
     axes.set_title("completed motion (pale: completed)")
     _as_picture(axes, camera)
+
+
+def _draw_points(axes: Axes, camera: Camera, motions: Motions, *, alphas: tuple[float, float], size: float) -> None:
+    """The points of motions; `alphas` are those of completed and of observed ones."""
+    for observed, alpha in zip((False, True), alphas, strict=True):
+        rows = np.flatnonzero((motions.motion != NOISE) & (motions.observed == observed))
+        column_row, _ = camera.pixel_from_world(motions.position[rows].astype(np.float64))
+        _dots(axes, column_row, _colours(motions.motion[rows]), size=size, alpha=alpha)
 
 
 def _draw_curve(axes: Axes, place: np.ndarray, curve: Representative) -> None:

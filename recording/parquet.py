@@ -88,7 +88,7 @@ def _column(place: Path, table: pa.Table, name: str) -> np.ndarray:
         values = table.column(name).cast(kind)
     except pa.ArrowException as error:
         raise InputError(f"{place}: expected column {name!r} as {kind}, but {_line(error)}") from None
-    if values.null_count:
+    if values.null_count and name not in ("row", "column"):  # Where completed, pandas and others write null for NaN.
         raise InputError(f"{place}: expected a value in every row of {name!r}, got {values.null_count} without")
     array = values.to_numpy().astype(kind.to_pandas_dtype())
     if name in ("x", "y", "z") and not np.isfinite(array).all():

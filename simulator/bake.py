@@ -59,7 +59,7 @@ def main() -> None:
 
 
 def full_body(model: anny.Anny, name: str, shape: dict[str, float]) -> Body:
-    """anny's body in its own rest pose, with all of its bones, turned to face x."""
+    """The body as anny makes it, in its own rest pose, with all of its bones, turned to face x."""
     result = model(phenotype_kwargs=shape)
     forward_from_anny = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # It faces -y.
     vertices = result["rest_vertices"][0].detach().numpy() @ forward_from_anny.T

@@ -11,7 +11,7 @@ from recording.metadata import ObjectRecord
 from recording.truth import MeshSequence
 from simulator import shapes
 from simulator.body import load_body
-from simulator.path import Path
+from simulator.path import Path, path_through
 from simulator.person import walking_person
 from simulator.scene import Scene
 from simulator.things import Ball, Obstacle, Person
@@ -53,7 +53,8 @@ def walkers_centres(scene: Scene) -> list[Float[np.ndarray, "frame 2"]]:
 def _meshes(scene: Scene) -> Iterator[tuple[Person | Ball | Obstacle, str, MeshSequence]]:
     times = frame_times(scene)
     for person in scene.people:
-        yield person, "person", walking_person(load_body(person.body), _walk(person), times, phase=person.phase)
+        walker = walking_person(load_body(person.body), _walk(person), times, phase=person.phase)
+        yield person, "person", walker.mesh
     for ball in scene.balls:
         yield ball, "ball", shapes.moved(shapes.ball(ball.radius), _flight(ball, times))
     for obstacle in scene.obstacles:
@@ -61,7 +62,7 @@ def _meshes(scene: Scene) -> Iterator[tuple[Person | Ball | Obstacle, str, MeshS
 
 
 def _walk(person: Person) -> Path:
-    return Path(person)
+    return path_through(person.waypoints, speed=person.speed, times=person.times, start=person.start)
 
 
 def _flight(ball: Ball, times: Float[np.ndarray, "frame"]) -> Float[np.ndarray, "frame 3"]:

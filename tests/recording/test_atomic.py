@@ -12,6 +12,18 @@ class Interrupted(Exception):
     """Something that nobody foresaw."""
 
 
+def write_half_a_file(path: Path, failure: type[BaseException]) -> None:
+    with whole_file(path, overwrite=True) as partial:
+        partial.write_text("half")
+        raise failure
+
+
+def write_half_a_folder(path: Path, failure: type[BaseException]) -> None:
+    with whole_folder(path, overwrite=True) as partial:
+        (partial / "a").write_text("half")
+        raise failure
+
+
 def names(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.iterdir())
 
@@ -35,25 +47,22 @@ def test_a_folder_appears_when_the_block_ends(tmp_path: Path) -> None:
 
 
 def test_a_failure_leaves_no_file(tmp_path: Path) -> None:
-    with pytest.raises(Interrupted), whole_file(tmp_path / "result") as partial:
-        partial.write_text("half")
-        raise Interrupted
+    with pytest.raises(Interrupted):
+        write_half_a_file(tmp_path / "result", Interrupted)
     assert names(tmp_path) == []
 
 
 def test_a_failure_leaves_no_folder(tmp_path: Path) -> None:
-    with pytest.raises(Interrupted), whole_folder(tmp_path / "result") as partial:
-        (partial / "a").write_text("half")
-        raise Interrupted
+    with pytest.raises(Interrupted):
+        write_half_a_folder(tmp_path / "result", Interrupted)
     assert names(tmp_path) == []
 
 
 def test_an_interrupt_leaves_nothing_either(tmp_path: Path) -> None:
-    with pytest.raises(KeyboardInterrupt), whole_folder(tmp_path / "result"):
-        raise KeyboardInterrupt
-    with pytest.raises(KeyboardInterrupt), whole_file(tmp_path / "file") as partial:
-        partial.write_text("half")
-        raise KeyboardInterrupt
+    with pytest.raises(KeyboardInterrupt):
+        write_half_a_folder(tmp_path / "result", KeyboardInterrupt)
+    with pytest.raises(KeyboardInterrupt):
+        write_half_a_file(tmp_path / "file", KeyboardInterrupt)
     assert names(tmp_path) == []
 
 
@@ -89,15 +98,13 @@ def test_the_old_result_survives_a_failure(tmp_path: Path) -> None:
     path = tmp_path / "result"
     path.mkdir()
     (path / "old").write_text("old")
-    with pytest.raises(Interrupted), whole_folder(path, overwrite=True) as partial:
-        (partial / "new").write_text("new")
-        raise Interrupted
+    with pytest.raises(Interrupted):
+        write_half_a_folder(path, Interrupted)
     assert names(path) == ["old"]
     assert names(tmp_path) == ["result"]
     (tmp_path / "file").write_text("old")
-    with pytest.raises(Interrupted), whole_file(tmp_path / "file", overwrite=True) as partial:
-        partial.write_text("half")
-        raise Interrupted
+    with pytest.raises(Interrupted):
+        write_half_a_file(tmp_path / "file", Interrupted)
     assert (tmp_path / "file").read_text() == "old"
 
 

@@ -26,7 +26,9 @@ def cameras(draw: st.DrawFn) -> Camera:
     )
 
 
-@given(cameras(), st.lists(st.tuples(st.floats(-10, 700), st.floats(-10, 500)), min_size=1, max_size=8), st.floats(0.1, 50))
+@given(
+    cameras(), st.lists(st.tuples(st.floats(-10, 700), st.floats(-10, 500)), min_size=1, max_size=8), st.floats(0.1, 50)
+)
 def test_a_picture_position_returns_from_the_world(camera: Camera, positions, depth: float) -> None:
     column_row = np.array(positions)
     points = camera.world_from_pixel(column_row, np.full(len(column_row), depth))
@@ -92,7 +94,7 @@ def test_a_camera_sees_its_target_in_the_middle_and_the_worlds_up_as_up(position
     camera = Camera(
         width=64, height=48, fx=50.0, fy=50.0, cx=32.0, cy=24.0, world_from_camera=looking_at(position, tuple(target))
     )
-    column_row, depth = camera.pixel_from_world(np.stack([target, target + [0, 0, 0.01]]))
+    column_row, depth = camera.pixel_from_world(target + np.array([[0, 0, 0], [0, 0, 0.01]]))
     np.testing.assert_allclose(column_row[0], [32.0, 24.0], atol=1e-6)
     assert depth[0] == pytest.approx(np.linalg.norm(away))
     assert column_row[1, 1] < 24.0  # Rows count downwards.

@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
+from worlds import plane, recorded, small_camera, sphere
 
 from recording.camera import looking_at
 from recording.metadata import CameraRecord, Metadata, ObjectRecord, camera_record, metadata_of
 from recording.recording import Recording, stripped
-from worlds import plane, recorded, small_camera, sphere
 
 metres = st.floats(-50, 50)
 
@@ -66,7 +66,12 @@ def test_zero_is_nobodys_id() -> None:
 
 @pytest.mark.parametrize(
     "known",
-    [{"timestamps": (0.0, 0.5)}, {"timestamps": (0.0, 0.5, 0.5)}, {"timestamps": (1.0, 0.5, 2.0)}, {"pixel_centre": 0.0}],
+    [
+        {"timestamps": (0.0, 0.5)},
+        {"timestamps": (0.0, 0.5, 0.5)},
+        {"timestamps": (1.0, 0.5, 2.0)},
+        {"pixel_centre": 0.0},
+    ],
 )
 def test_values_that_contradict_each_other_are_refused(known: dict[str, Any]) -> None:
     with pytest.raises(ValidationError):

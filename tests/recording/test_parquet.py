@@ -63,7 +63,7 @@ def assert_same(one: Motions, other: Motions) -> None:
         assert getattr(one, name).dtype == getattr(other, name).dtype
     assert one.links == other.links
     assert one.events == other.events
-    assert one.making == other.making
+    assert vars(one.making) == vars(other.making)
     assert len(one.representatives) == len(other.representatives)
     for mine, theirs in zip(one.representatives, other.representatives, strict=True):
         for entry in fields(Representative):
@@ -132,7 +132,7 @@ def test_a_minimal_file_is_enough_and_its_rows_are_sorted(tmp_path: Path) -> Non
     np.testing.assert_array_equal(motions.segment, motions.motion)
     np.testing.assert_array_equal(motions.confidence, 1.0)
     assert np.isnan(motions.column_row).all()
-    assert motions.making == Making()
+    assert vars(motions.making) == vars(Making())
     assert motions.representatives == ()
     assert motions.motion_ids == [0, 1]
 

@@ -74,8 +74,7 @@ def test_no_display_outlives_its_block(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(progress, "PATIENCE_SECONDS", -1.0)
     screen = console(terminal=True)
     with pytest.raises(ZeroDivisionError), progress_shown(screen):
-        for number in tracked(range(3), "failing", total=3):
-            assert 1 // number
+        list(1 // number for number in tracked(range(3), "failing", total=3))
     before = written(screen)
     assert list(tracked(range(3), "afterwards", total=3)) == [0, 1, 2]
     assert written(screen) == before

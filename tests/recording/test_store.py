@@ -11,6 +11,7 @@ import numpy as np
 import OpenEXR
 import pytest
 from jaxtyping import config
+from worlds import small_camera
 
 from recording.camera import looking_at
 from recording.errors import InputError
@@ -20,7 +21,6 @@ from recording.metadata import ObjectRecord, metadata_of
 from recording.recording import Recording, XRay, stripped
 from recording.store import load_recording, save_recording, write_recording
 from recording.truth import MeshSequence
-from worlds import small_camera
 
 FRAMES, HEIGHT, WIDTH = 3, 4, 5
 
@@ -57,9 +57,7 @@ def random_frame(generator: np.random.Generator) -> Frame:
         v=generator.random((HEIGHT, WIDTH), np.float32),
     )
     reason = generator.integers(0, 4, (HEIGHT, WIDTH), np.uint32)
-    return Frame(
-        depth=random_depth(generator), labels=labels, clean_depth=random_depth(generator), reason=reason
-    )
+    return Frame(depth=random_depth(generator), labels=labels, clean_depth=random_depth(generator), reason=reason)
 
 
 def random_mesh(generator: np.random.Generator, frames: int) -> MeshSequence:

@@ -24,7 +24,7 @@ SMALL: dict[str, Any] = {
     "camera": {"width": 48, "height": 36, "position": [0, -4, 1.5], "look_at": [0, 0, 1]},
     "people": [{"body": "woman", "waypoints": [[-1, 0.5], [1, 0.5]], "speed": 1.4, "start": -0.3}],
     "balls": [{"radius": 0.3, "waypoints": [[1, 0, 1], [0.5, 0, 1.4]], "times": [0, 0.4]}],
-    "obstacles": [{"name": "post", "shape": "cylinder", "radius": 0.2, "height": 1.5, "position": [-0.5, -0.8, 0]}],
+    "obstacles": [{"name": "post", "shape": "cylinder", "radius": 0.2, "height": 1.5, "position": [-0.3, -0.8, 0]}],
 }
 
 

@@ -115,3 +115,11 @@ def test_people_are_as_near_as_in_the_frame_in_which_they_are_nearest() -> None:
     there = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]])
     back = np.array([[2.0, 1.0], [1.0, 1.0], [0.0, 1.0]])
     assert smallest_clearance([there, back], []).people_m == pytest.approx(1.0)
+
+
+def test_a_clearance_is_said_in_words() -> None:
+    there, beside = np.array([[0.0, 0.0]]), np.array([[0.0, 1.5]])
+    post = Obstacle(shape="cylinder", radius=0.5, height=1.0, position=(1.0, 0.0, 0.0))
+    said = smallest_clearance([there, beside], [post]).sentence
+    assert said == "at least 1.50 m between two people and 0.50 m between a person and an obstacle"
+    assert smallest_clearance([there], []).sentence == "nobody near another"
