@@ -35,7 +35,7 @@ def absorbed(
     """The segments with fragments given to the body that they move with, numbered anew.
 
     Segment f is a fragment of body b if, over the frames that both have (at least half of f's, and three),
-    f has at most `fragment_share` of b's points, their gap is below `neighbour_radius_m` in the median, and
+    f has at most `fragment_share` of b's points, their gap is below `fragment_gap_m` in the median, and
     f drifts from b by less than `fragment_drift_m_per_s`. The smallest go first, each to its nearest body.
     """
     count = int(segment.max(initial=-1)) + 1
@@ -46,7 +46,7 @@ def absorbed(
     for fragment in np.argsort(np.nansum(meetings.size, axis=1), kind="stable"):
         gaps = {other: _gap(meetings, int(fragment), other, settings, fps) for other in range(count)}
         nearest = min(gaps, key=lambda other: gaps[other])
-        if gaps[nearest] < settings.neighbour_radius_m:
+        if gaps[nearest] < settings.fragment_gap_m:
             body[fragment] = nearest
     for _ in range(count):
         body = body[body]  # A fragment of a fragment belongs to the last one's body.

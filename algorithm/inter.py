@@ -70,6 +70,7 @@ def smoothest_polynomial(before: Curve, after: Curve, *, eps6_m: float) -> Polyn
 
 def linked(
     curves: Sequence[Curve],
+    ends: Sequence[Curve],
     weight: Float[np.ndarray, "curve"],
     *,
     eps6_m: float,
@@ -79,15 +80,15 @@ def linked(
     """Which curve goes on as which, and along which polynomial: the assignment of least total cost.
 
     Curve b may follow a if a ends before b begins, at most `longest_frames` apart, and a polynomial
-    through the last and the first `ends_frames` of them has an error below epsilon 6. A curve may also
-    stay alone at either end, for people enter and leave; that costs the more the greater its `weight`
-    (0 to 1) is, so that a body is not left alone for the sake of a scrap.
+    through the last and the first `ends_frames` of their trusted parts, `ends`, has an error below
+    epsilon 6. A curve may also stay alone at either end, for people enter and leave; that costs the more
+    the greater its `weight` (0 to 1) is, so that a body is not left alone for the sake of a scrap.
     """
     candidates: dict[tuple[int, int], Polynomial] = {}
     for i, before in enumerate(curves):
         for j, after in enumerate(curves):
             if 0 < after.first - before.last <= longest_frames:
-                found = smoothest_polynomial(*_ends(before, after, ends_frames), eps6_m=eps6_m)
+                found = smoothest_polynomial(*_ends(ends[i], ends[j], ends_frames), eps6_m=eps6_m)
                 if found is not None:
                     candidates[i, j] = found
     alone = eps6_m * np.exp(HIGHEST_DEGREE) * weight
@@ -134,13 +135,13 @@ def _ends(before: Curve, after: Curve, frames: float) -> tuple[Curve, Curve]:
 
 
 def trusted(curve: Curve, *, share: float, window_frames: int) -> Curve:
-    """The curve without faint ends: frames with fewer than `share` of the points seen within the window.
+    """The curve without faint ends: frames with fewer than `share` of the window's median number of points.
 
     Where someone goes behind a wall the last sliver of him, an arm perhaps, says little about his place.
     """
     reach = max(window_frames, 1)
-    begin = np.flatnonzero(curve.points >= share * curve.points[:reach].max())
-    end = np.flatnonzero(curve.points >= share * curve.points[-reach:].max())
+    begin = np.flatnonzero(curve.points >= share * np.median(curve.points[:reach]))
+    end = np.flatnonzero(curve.points >= share * np.median(curve.points[-reach:]))
     return curve.between(curve.first + int(begin[0]), curve.first + max(int(end[-1]), int(begin[0])))
 
 

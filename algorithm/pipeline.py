@@ -1,5 +1,6 @@
 """Algorithm 1 of the paper: from a recording to motions."""
 
+import math
 from collections.abc import Sequence
 from itertools import pairwise
 
@@ -110,7 +111,7 @@ def segmented(trajectories: Trajectories, settings: Settings, spacing_m: float, 
         if settings.clustering == "eigengap":
             label = clustering.cut_at_eigengap(matrix, most=settings.most_segments)
         else:
-            label = clustering.cut_while_cheap(matrix, cut_below=settings.cut_below, smallest=int(settings.eps4))
+            label = clustering.cut_while_cheap(matrix, cut_below=settings.cut_below, smallest=math.ceil(settings.eps4))
         label = clustering.without_small(label, smallest=settings.eps4)
         return clustering.followers(trajectories, sample, label)
 
@@ -129,7 +130,7 @@ def completed_motions(
     weight = np.ones(len(curves))
     if settings.spare_scraps:
         weight = seen_areas(trajectories, segments, camera=recording.camera)
-    links = linked(ends, weight, eps6_m=settings.eps6, ends_frames=ends_frames, longest_frames=longest_frames)
+    links = linked(curves, ends, weight, eps6_m=settings.eps6, ends_frames=ends_frames, longest_frames=longest_frames)
     motions = []
     for chain in chains(links, len(curves)):
         path = [links[pair] for pair in pairwise(chain)]

@@ -56,7 +56,7 @@ class Settings(Frozen):
     """`product` = the paper's traj_sim; `spread` = how much the distance of two trajectories changes."""
     eps3: Positive = 3.0
     """Pairs beyond it are ignored: traj_sim for `product` (paper: epsilon 3), point spacings for `spread`."""
-    eps5: Count = 1
+    eps5: Count = 2
     """Every eps5-th trajectory is clustered, the others follow their nearest neighbour (paper: epsilon 5)."""
 
     clustering: ClusteringName = "normalised_cut"
@@ -70,12 +70,14 @@ class Settings(Frozen):
 
     fragment_share: Share = 0.25
     """A segment with at most this share of a near one's points is a limb of it; 0 = none is (paper)."""
-    fragment_drift_m_per_s: Positive = 0.8
+    fragment_gap_m: Positive = 0.5
+    """Metres: a segment farther from the other is no limb of it."""
+    fragment_drift_m_per_s: Positive = 1.5
     """Metres a second: a segment that leaves the other faster is no limb of it."""
 
-    drift_seconds: Annotated[float, Field(ge=0)] = 0.4
+    drift_seconds: Annotated[float, Field(ge=0)] = 0.1
     """Seconds over which a representative is drawn to the centres of mass of well seen frames; 0 = never (paper)."""
-    faint_share: Share = 0.2
+    faint_share: Share = 0.6
     """A segment's ends with a smaller share of its points near the end do not count for linking; 0 = all count."""
 
     alignment: AlignmentName = "translation"

@@ -1,6 +1,7 @@
 """Frames as OpenEXR files: one single-part image, plain channels, attributes that explain it alone."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import OpenEXR
@@ -8,8 +9,10 @@ import OpenEXR
 from recording.camera import PIXEL_CENTRE, Camera
 from recording.errors import InputError
 from recording.frame import Frame, Labels
+from recording.xray import Cutout, CutoutXRay, XRay, trimmed_cutouts
 
 Channels = dict[str, np.ndarray]
+_CODING = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
 _LABELS = {"objectid": np.uint32, "face": np.uint32, "bary.u": np.float32, "bary.v": np.float32}
 
 
@@ -20,7 +23,8 @@ def write_frame(path: Path, frame: Frame, *, camera: Camera, fps: float) -> None
         values = (frame.labels.objectid, frame.labels.face, frame.labels.u, frame.labels.v)
         channels |= {name: value for name, value in zip(_LABELS, values, strict=True) if value is not None}
     if frame.clean_depth is not None:
-        channels["Z.clean"] = stored_depth(frame.clean_depth)
+        same = frame.clean_depth is frame.depth
+        channels["Z.clean"] = channels["Z"] if same else stored_depth(frame.clean_depth)
     if frame.reason is not None:
         channels["reason"] = frame.reason
     write_channels(path, channels, attributes=_conventions(camera, fps))
@@ -51,23 +55,49 @@ def read_frame(path: Path, *, shape: tuple[int, int]) -> Frame:
     )
 
 
+def write_xray(path: Path, xray: XRay, *, shape: tuple[int, int]) -> None:
+    """Write a part `xray_N` for each object N, as large as the object: its data window lies in the picture."""
+    picture = _window(0, 0, shape)
+    parts = [
+        OpenEXR.Part(
+            {
+                **_CODING,
+                "displayWindow": picture,
+                "dataWindow": _window(cutout.row, cutout.column, cutout.depth.shape),
+                "unocclude.depth": "metres along the camera's z axis, 0 = not this object",
+            },
+            {f"xray_{objectid}": np.ascontiguousarray(stored_depth(cutout.depth))},
+            f"xray_{objectid}",
+        )
+        for objectid, cutout in trimmed_cutouts(xray).items()
+    ]
+    _write(OpenEXR.File(parts), path)
+
+
+def read_xray(path: Path, *, shape: tuple[int, int]) -> CutoutXRay:
+    """The X-ray in a file whose picture has the expected shape (rows, columns)."""
+    cutouts = {}
+    for header, channels in _parts(path):
+        column, row = (int(place) for place in header["dataWindow"][0])
+        for name, pixels in channels.items():
+            last_row, last_column = row + pixels.shape[0], column + pixels.shape[1]
+            if min(row, column) < 0 or last_row > shape[0] or last_column > shape[1]:
+                came = f"{name!r} in rows {row} to {last_row - 1} and columns {column} to {last_column - 1}"
+                raise InputError(f"{path}: expected parts within {shape[1]}x{shape[0]} pixels, got {came}")
+            depth = np.where(pixels > 0, pixels, np.float32(np.nan))
+            cutouts[int(name.removeprefix("xray_"))] = Cutout(row=row, column=column, depth=depth)
+    return CutoutXRay(cutouts, shape)
+
+
 def write_channels(path: Path, channels: Channels, *, attributes: dict[str, object]) -> None:
-    """Write single channels, run-length coded: the fastest of the lossless codings on depth and ids."""
-    header = {"compression": OpenEXR.RLE_COMPRESSION, "type": OpenEXR.scanlineimage, **attributes}
+    """Write single channels."""
     contiguous = {name: np.ascontiguousarray(pixels) for name, pixels in channels.items()}
-    OpenEXR.File(header, contiguous).write(str(path))
+    _write(OpenEXR.File({**_CODING, **attributes}, contiguous), path)
 
 
 def read_channels(path: Path, *, shape: tuple[int, int]) -> Channels:
     """The channels of a file, each of the expected shape (rows, columns)."""
-    if not path.is_file():
-        raise InputError(f"{path} is missing: the recording is not complete; make or import it again")
-    try:
-        with OpenEXR.File(str(path), separate_channels=True) as file:
-            channels = {name: np.array(channel.pixels) for name, channel in file.channels().items()}
-    except (RuntimeError, ValueError, MemoryError, TypeError) as error:  # OpenEXR raises what it likes.
-        reason = " ".join(str(error).split()) or type(error).__name__
-        raise InputError(f"{path}: expected an OpenEXR file, but it cannot be read: {reason}") from None
+    channels = {name: pixels for _, part in _parts(path) for name, pixels in part.items()}
     for name, pixels in channels.items():
         if pixels.shape != shape:
             expected, came = f"{shape[1]}x{shape[0]}", "x".join(map(str, pixels.shape[::-1]))
@@ -77,7 +107,38 @@ def read_channels(path: Path, *, shape: tuple[int, int]) -> Channels:
 
 def stored_depth(depth: np.ndarray) -> np.ndarray:
     """The depth as it stands on disk: metres, 0 where nothing returned."""
-    return np.nan_to_num(depth, nan=0.0).astype(np.float32)
+    return np.where(np.isnan(depth), np.float32(0), depth.astype(np.float32, copy=False))
+
+
+def _write(file: OpenEXR.File, path: Path) -> None:
+    try:
+        file.write(str(path))
+    except RuntimeError as error:
+        raise InputError(f"{path}: cannot be written: {_one_line(error)}") from None
+
+
+def _parts(path: Path) -> list[tuple[dict[str, Any], Channels]]:
+    """Header and channels of each part of a file."""
+    if not path.is_file():
+        raise InputError(f"{path} is missing: the recording is not complete; make or import it again")
+    try:
+        with OpenEXR.File(str(path), separate_channels=True) as file:
+            return [
+                (dict(part.header), {name: np.array(channel.pixels) for name, channel in part.channels.items()})
+                for part in file.parts
+            ]
+    except (RuntimeError, ValueError, MemoryError, TypeError) as error:  # OpenEXR raises what it likes.
+        raise InputError(f"{path}: expected an OpenEXR file, but it cannot be read: {_one_line(error)}") from None
+
+
+def _one_line(error: Exception) -> str:
+    return " ".join(str(error).split()) or type(error).__name__
+
+
+def _window(row: int, column: int, shape: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray]:
+    """The first and the last (column, row) of a rectangle, as OpenEXR wants them."""
+    first = np.array([column, row], dtype=np.int32)
+    return first, first + np.array(shape[::-1], dtype=np.int32) - 1
 
 
 def _depth(path: Path, channels: Channels, name: str) -> np.ndarray | None:

@@ -14,9 +14,9 @@ from recording.errors import InputError
 from recording.frame import Frame, Labels
 from recording.metadata import Metadata, metadata_of
 from recording.progress import tracked
-from recording.recording import XRay
 from recording.store import write_recording
 from recording.version import VERSION
+from recording.xray import XRay
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -2,20 +2,15 @@
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-
-import numpy as np
-from jaxtyping import Float32
 
 from recording.camera import Camera
 from recording.exr import stored_depth
 from recording.frame import Frame
 from recording.metadata import Metadata
 from recording.truth import Truth
-
-XRay = Mapping[int, Float32[np.ndarray, "row column"]]
-"""Each moving object's depth as if nothing stood before it, metres; NaN where it is not."""
+from recording.xray import XRay
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

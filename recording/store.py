@@ -3,6 +3,7 @@
 import os
 import zipfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from functools import lru_cache
 from pathlib import Path
 from typing import overload
@@ -13,11 +14,12 @@ from recording.atomic import whole_folder
 from recording.camera import Camera
 from recording.checks import json_document, validated
 from recording.errors import InputError
-from recording.exr import read_channels, read_frame, stored_depth, write_channels, write_frame
+from recording.exr import read_frame, read_xray, write_frame, write_xray
 from recording.frame import Frame
 from recording.metadata import Metadata
-from recording.recording import Recording, XRay
+from recording.recording import Recording
 from recording.truth import MeshSequence, Truth
+from recording.xray import XRay
 
 
 def write_recording(
@@ -29,23 +31,40 @@ def write_recording(
     overwrite: bool = False,
 ) -> None:
     """Write a recording while its frames are being made; the folder appears when all of it is there."""
+    with new_recording(folder, metadata=metadata, truth=truth, overwrite=overwrite) as partial:
+        for number, (frame, xray) in enumerate(frames):
+            write_picture(partial, number, frame, xray, metadata=metadata)
+
+
+@contextmanager
+def new_recording(
+    folder: Path, *, metadata: Metadata, truth: Truth | None = None, overwrite: bool = False
+) -> Iterator[Path]:
+    """A folder to fill by `write_picture`, in any order and by any process; a recording when it is full.
+
+    It becomes `folder` when the block ends well, and vanishes when it does not.
+    """
     if folder.is_dir() and any(folder.iterdir()) and not (folder / "recording.json").is_file():
         raise InputError(f"{folder}: expected a recording to replace, got a folder of something else: choose another")
-    camera = metadata.as_camera()
     with whole_folder(folder, overwrite=overwrite) as partial:
         (partial / "frames").mkdir()
-        count = 0
-        for number, (frame, xray) in enumerate(frames):
-            write_frame(partial / "frames" / frame_name(number), frame, camera=camera, fps=metadata.fps)
-            if xray:  # OpenEXR has no file without channels.
-                _write_xray(partial / "xray" / frame_name(number), xray)
-            count = number + 1
+        yield partial
+        count = sum(1 for _ in (partial / "frames").iterdir())
         if count != metadata.frames:
             raise InputError(f"{folder}: expected {metadata.frames} frames, got {count}")
         if truth is not None:
             _write_truth(partial / "truth.npz", truth)
         text = metadata.model_dump_json(indent=2, exclude_none=True)
         (partial / "recording.json").write_text(text + "\n", encoding="utf-8")
+
+
+def write_picture(partial: Path, number: int, frame: Frame, xray: XRay | None, *, metadata: Metadata) -> None:
+    """Write one frame, and its X-ray if there is one, into the folder of a new recording."""
+    camera = metadata.as_camera()
+    write_frame(partial / "frames" / frame_name(number), frame, camera=camera, fps=metadata.fps)
+    if xray:  # OpenEXR has no file without channels.
+        (partial / "xray").mkdir(exist_ok=True)
+        write_xray(partial / "xray" / frame_name(number), xray, shape=(camera.height, camera.width))
 
 
 def save_recording(recording: Recording, folder: str | os.PathLike[str], *, overwrite: bool = False) -> None:
@@ -131,11 +150,7 @@ class _StoredXRays(_Stored, Sequence[XRay]):
         if isinstance(index, slice):
             return [self[number] for number in range(*index.indices(self._count))]
         path = self._folder / "xray" / frame_name(self._number(index))
-        channels = read_channels(path, shape=self._shape)
-        return {
-            int(name.removeprefix("xray_")): np.where(pixels > 0, pixels, np.float32(np.nan))
-            for name, pixels in channels.items()
-        }
+        return read_xray(path, shape=self._shape)
 
 
 class _StoredTruth(Mapping[int, MeshSequence]):
@@ -169,12 +184,6 @@ class _StoredTruth(Mapping[int, MeshSequence]):
         except (KeyError, ValueError, OSError, zipfile.BadZipFile):
             raise InputError(f"{self._path}: the mesh of object {objectid} is damaged: make it again") from None
         return MeshSequence(faces=faces.astype(np.int32), vertices=vertices.astype(np.float32))
-
-
-def _write_xray(path: Path, xray: XRay) -> None:
-    path.parent.mkdir(exist_ok=True)
-    channels = {f"xray_{objectid}": stored_depth(depth) for objectid, depth in xray.items()}
-    write_channels(path, channels, attributes={"unocclude.depth": "metres along z, 0 = not this object"})
 
 
 def _write_truth(path: Path, truth: Truth) -> None:

@@ -1,22 +1,17 @@
-"""A simulated recording held against itself: depth, labels, meshes and X-rays must tell one story."""
+"""A simulated recording held against itself: depth, labels, meshes, X-rays, motion and feet must tell one story."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-from jaxtyping import Float
-
-from recording.camera import Camera, pixel_grid
+from recording.agreement import AGREEMENTS
 from recording.errors import InputError
-from recording.frame import Frame, Labels
+from recording.feet import foot_sink_m, foot_slide_m
+from recording.moment import Moment, moment_of
 from recording.progress import tracked
-from recording.recording import Recording, XRay
+from recording.recording import Recording
 from recording.truth import Truth
 
-TOLERANCE_M = 1e-4
-"""Largest distance between two accounts of the same point: a tenth of a millimetre."""
-TOLERANCE_PX = 0.05
-"""Largest distance between a pixel's centre and its material point in the picture."""
+FOOT_M = 0.02
+"""How far a standing foot may slide, and how deep it may sink, metres."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,55 +54,45 @@ class Report:
         )
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Moment:
-    """One frame with all that is said about it."""
-
-    camera: Camera
-    frame: Frame
-    depth: Float[np.ndarray, "row column"]
-    """Before the sensor."""
-    labels: Labels
-    material: Float[np.ndarray, "row column 3"]
-    """The labels' material points by the truth, world axes, metres; NaN where there is none."""
-    xray: XRay | None
-    known: tuple[int, ...]
-    """The ids of `recording.json`."""
-    moving: tuple[int, ...]
-    """Those of them that move."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class _Test:
-    name: str
-    meaning: str
-    bound: float
-    unit: str
-    error: Callable[[_Moment], float]
-    of_xray: bool = False
-
-
 def verify(recording: Recording) -> Report:
     """The largest error of each kind, with its bound.
 
     Holds depth and camera against the labels' material points on the truth meshes (metres, and pixels in
-    the picture), labels against depth and against the objects of `recording.json`, reasons against missing
-    returns, and the X-ray twin against what is seen. Frames are read one by one. A recording without exact
-    truth, as every real one, cannot be verified: an `InputError`.
+    the picture), depth and X-ray twin against the meshes by a ray caster of its own, labels against depth and
+    against the objects of `recording.json`, reasons against missing returns, flow against motion from each frame
+    to the next, the X-ray twin against what is seen, and people's feet against the ground. Frames are read one
+    by one. A recording without exact truth, as every real one, cannot be verified: an `InputError`.
     """
     truth = _checked_truth(recording)
-    tests = [test for test in _TESTS if recording.xray is not None or not test.of_xray]
-    largest = {test.name: 0.0 for test in tests}
+    return Report(checks=(*_frame_checks(recording, truth), *_foot_checks(recording, truth)))
+
+
+def _frame_checks(recording: Recording, truth: Truth) -> list[Check]:
+    """What is compared in every frame."""
+    agreements = [each for each in AGREEMENTS if recording.xray is not None or not each.of_xray]
+    largest = {each.name: 0.0 for each in agreements}
+    moment: Moment | None = None
     frames = tracked(recording.frames, "verifying", total=recording.metadata.frames)
     for number, frame in enumerate(frames):
-        moment = _moment(recording, truth, frame, number)
-        for test in tests:
-            largest[test.name] = max(largest[test.name], test.error(moment))
-    return Report(
-        checks=tuple(
-            Check(name=t.name, meaning=t.meaning, largest=largest[t.name], bound=t.bound, unit=t.unit) for t in tests
-        )
-    )
+        moment = moment_of(recording, truth, frame, number=number, before=moment)
+        for each in agreements:
+            largest[each.name] = max(largest[each.name], each.error(moment))
+    return [
+        Check(name=each.name, meaning=each.meaning, largest=largest[each.name], bound=each.bound, unit=each.unit)
+        for each in agreements
+    ]
+
+
+def _foot_checks(recording: Recording, truth: Truth) -> list[Check]:
+    """What is asked of people's meshes; nothing where there are none."""
+    people = [truth[entry.id] for entry in recording.metadata.objects or () if entry.kind == "person"]
+    if not people:
+        return []
+    slide, sink = max(map(foot_slide_m, people)), max(map(foot_sink_m, people))
+    return [
+        Check(name="feet slide", meaning="way of a foot while it stands", largest=slide, bound=FOOT_M, unit="m"),
+        Check(name="feet sink", meaning="lowest point of a person below ground", largest=sink, bound=FOOT_M, unit="m"),
+    ]
 
 
 def _checked_truth(recording: Recording) -> Truth:
@@ -123,140 +108,3 @@ def _checked_truth(recording: Recording) -> Truth:
             came = f"got {len(mesh.vertices)}: make the recording again"
             raise InputError(f"object {entry.id} ({entry.name}): expected its mesh in {expected} frames, {came}")
     return recording.truth
-
-
-def _moment(recording: Recording, truth: Truth, frame: Frame, number: int) -> _Moment:
-    if frame.labels is None or not frame.labels.exact:
-        raise InputError(f"frame {number}: expected channels objectid, face, bary.u and bary.v: make it again")
-    return _Moment(
-        camera=recording.camera,
-        frame=frame,
-        depth=frame.depth if frame.clean_depth is None else frame.clean_depth,
-        labels=frame.labels,
-        material=_material_points(frame.labels, truth, number),
-        xray=None if recording.xray is None else recording.xray[number],
-        known=tuple(entry.id for entry in recording.metadata.objects or ()),
-        moving=recording.moving_ids,
-    )
-
-
-def _material_points(labels: Labels, truth: Truth, number: int) -> Float[np.ndarray, "row column 3"]:
-    """The labels' points on the meshes; NaN where there is no label, or one that no mesh has."""
-    points = np.full((*labels.objectid.shape, 3), np.nan)
-    if labels.face is None or labels.u is None or labels.v is None:
-        return points
-    for objectid in np.unique(labels.objectid).tolist():
-        mesh = truth.get(objectid)
-        if mesh is not None:
-            own = (labels.objectid == objectid) & (labels.face < len(mesh.faces))
-            points[own] = mesh.material_points(
-                frame=number,
-                face=labels.face[own].astype(np.int64),
-                u=labels.u[own].astype(np.float64),
-                v=labels.v[own].astype(np.float64),
-            )
-    return points
-
-
-def _depth_error_m(moment: _Moment) -> float:
-    labelled = moment.labels.objectid > 0
-    seen = moment.camera.world_points(moment.depth)
-    return _largest(np.linalg.norm(seen - moment.material, axis=-1)[labelled])
-
-
-def _projection_error_px(moment: _Moment) -> float:
-    labelled = moment.labels.objectid > 0
-    column_row, _ = moment.camera.pixel_from_world(moment.material)
-    centre = pixel_grid(moment.camera.height, moment.camera.width)
-    return _largest(np.linalg.norm(column_row - centre, axis=-1)[labelled])
-
-
-def _unlabelled_pixels(moment: _Moment) -> float:
-    return float(np.sum(np.isfinite(moment.depth) != (moment.labels.objectid > 0)))
-
-
-def _strange_labels(moment: _Moment) -> float:
-    strange = ~np.isin(moment.labels.objectid, moment.known) | np.isnan(moment.material[..., 0])
-    return float(np.sum((moment.labels.objectid > 0) & strange))
-
-
-def _unexplained_pixels(moment: _Moment) -> float:
-    if moment.frame.reason is None:
-        return 0.0
-    return float(np.sum(~moment.frame.seen & (moment.frame.reason == 0)))
-
-
-def _seen_xray_error_m(moment: _Moment) -> float:
-    errors = [0.0 if set(moment.moving) <= set(moment.xray or {}) else np.inf]
-    for objectid, depth in (moment.xray or {}).items():
-        own = moment.labels.objectid == objectid
-        errors.append(_largest(np.abs(moment.depth[own].astype(np.float64) - depth[own])))
-    return max(errors)
-
-
-def _nearer_xray_m(moment: _Moment) -> float:
-    errors = [0.0]
-    for depth in (moment.xray or {}).values():
-        there = np.isfinite(depth)
-        errors.append(_largest(moment.depth[there].astype(np.float64) - depth[there]))
-    return max(errors)
-
-
-def _largest(errors: Float[np.ndarray, "error"]) -> float:
-    """The largest error; infinite where one cannot be computed, 0 where there is nothing to compare."""
-    return float(np.max(np.where(np.isnan(errors), np.inf, errors), initial=0.0))
-
-
-_TESTS = (
-    _Test(
-        name="point",
-        meaning="point by depth and camera, and by the mesh",
-        bound=TOLERANCE_M,
-        unit="m",
-        error=_depth_error_m,
-    ),
-    _Test(
-        name="projection",
-        meaning="the mesh's point in the picture, and the pixel's centre",
-        bound=TOLERANCE_PX,
-        unit="px",
-        error=_projection_error_px,
-    ),
-    _Test(
-        name="unlabelled",
-        meaning="depth without a label, or a label without depth",
-        bound=0.0,
-        unit="pixels",
-        error=_unlabelled_pixels,
-    ),
-    _Test(
-        name="strange labels",
-        meaning="labels of an object or a face that there is not",
-        bound=0.0,
-        unit="pixels",
-        error=_strange_labels,
-    ),
-    _Test(
-        name="unexplained",
-        meaning="no return, and no reason for it",
-        bound=0.0,
-        unit="pixels",
-        error=_unexplained_pixels,
-    ),
-    _Test(
-        name="x-ray seen",
-        meaning="depth of a seen object, and in its X-ray",
-        bound=TOLERANCE_M,
-        unit="m",
-        error=_seen_xray_error_m,
-        of_xray=True,
-    ),
-    _Test(
-        name="x-ray nearer",
-        meaning="how far an X-ray lies before what is seen",
-        bound=TOLERANCE_M,
-        unit="m",
-        error=_nearer_xray_m,
-        of_xray=True,
-    ),
-)

@@ -22,7 +22,7 @@ WEIGHTS_PER_VERTEX = 4
 SHAPES = {
     "man": {"gender": 0.0, "age": 0.67, "muscle": 0.55, "weight": 0.5, "height": 0.38, "proportions": 0.6},
     "woman": {"gender": 1.0, "age": 0.67, "muscle": 0.45, "weight": 0.45, "height": 0.42, "proportions": 0.6},
-    "heavy": {"gender": 0.0, "age": 0.75, "muscle": 0.5, "weight": 0.95, "height": 0.33, "proportions": 0.4},
+    "heavy": {"gender": 0.0, "age": 0.7, "muscle": 0.15, "weight": 1.0, "height": 0.34, "proportions": 0.2},
     "teen": {"gender": 0.6, "age": 0.48, "muscle": 0.5, "weight": 0.4, "height": 0.48, "proportions": 0.5},
 }
 """anny's shape parameters, each 0 to 1; gender 0 is male; age 1/3 is a child, 2/3 an adult, 1 an old person."""

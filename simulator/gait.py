@@ -23,8 +23,15 @@ _STANCE = 0.62
 _UNDER_HIP = 0.42
 """Share of the stance after which the hip is above the footprint's ankle."""
 _CALM_SECONDS = 0.12
+_EASE_SECONDS = 0.2
+_CLOSING_SECONDS = 1.3
+_CLOSING_SPEED = 0.6
 _SLOWEST = 0.05
-"""Metres a second below which the heading is that of before."""
+"""Metres a second below which somebody stands."""
+_TURNING_RADIUS = 0.4
+"""Metres from the turning axis to the feet, were a turn on the spot walked at its rate; more makes more steps."""
+_TURN_SECONDS = 1.2
+"""How long a turn on the spot takes, if the pause allows."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -38,7 +45,7 @@ class Walk:
     heading: Float[np.ndarray, "moment"]
     """Radians from x towards y, continuous."""
     speed: Float[np.ndarray, "moment"]
-    """Metres a second."""
+    """Metres a second; who turns on the spot or closes his feet counts as walking, for his feet step."""
     phase: Float[np.ndarray, "moment"]
     """Gait cycles; at whole numbers the left foot comes down, half a cycle later the right."""
 
@@ -76,13 +83,43 @@ def planned_walk(path: Path, *, thigh_height: float, phase: float, begin: float,
         early = time < path.begin
         ahead = (path.positions(np.array([path.begin + 0.05]))[0] - path.places[0]) / 0.05
         place[early] = path.places[0] + (time[early] - path.begin)[:, None] * ahead
+    place = _eased(place, time, path.end)
+    if path.begin > begin:
+        place = _eased(place, time, path.begin)
     calm = _CALM_SECONDS * RATE
     velocity = gaussian_filter1d(np.gradient(place, 1 / RATE, axis=0), calm, axis=0, mode="nearest")
     speed = np.linalg.norm(velocity, axis=1)
+    heading = _headings(velocity, speed)
+    speed = speed + _pace_on_the_spot(speed, heading)
     frequency = np.sqrt(speed / thigh_height) / STRIDE_FACTOR  # Speed over stride length.
     cycles = np.cumsum(frequency) / RATE
     cycles += phase - np.interp(begin, time, cycles)
-    return Walk(time=time, place=place, heading=_headings(velocity, speed), speed=speed, phase=cycles)
+    return Walk(time=time, place=place, heading=heading, speed=speed, phase=cycles)
+
+
+def _pace_on_the_spot(
+    speed: Float[np.ndarray, "moment"], heading: Float[np.ndarray, "moment"]
+) -> Float[np.ndarray, "moment"]:
+    """The speed, m/s, at which feet step though the body stands: to follow a turn, and to come together after a stop.
+
+    The closing bell's height and length make about half a cycle, which is one step of the foot left behind.
+    """
+    standing = np.clip(1 - speed / _SLOWEST, 0.0, 1.0)
+    turn = _TURNING_RADIUS * standing * np.abs(np.gradient(heading, 1 / RATE))
+    moment = np.arange(len(speed))
+    last_walking = np.maximum.accumulate(np.where(speed > _SLOWEST, moment, -len(speed)))
+    since = np.clip((moment - last_walking) / (_CLOSING_SECONDS * RATE), 0.0, 1.0)
+    close = _CLOSING_SPEED * np.sin(np.pi * since) ** 2
+    return gaussian_filter1d(np.maximum(turn, close), 0.5 * _CALM_SECONDS * RATE, mode="nearest")
+
+
+def _eased(
+    place: Float[np.ndarray, "moment 2"], time: Float[np.ndarray, "moment"], change: float
+) -> Float[np.ndarray, "moment 2"]:
+    """The places, with the sudden start or stop at the time `change` spread over most of a second."""
+    smooth = gaussian_filter1d(place, _EASE_SECONDS * RATE, axis=0, mode="nearest")
+    away = np.clip(np.abs(time - change) / (6 * _EASE_SECONDS), 0.0, 1.0)[:, None]
+    return place + (1 - away**2 * (3 - 2 * away)) * (smooth - place)
 
 
 def planned_steps(walk: Walk, *, side: int, half_width: float) -> Step:
@@ -124,10 +161,16 @@ def _pitch(stance: Float[np.ndarray, "moment"], swing: Float[np.ndarray, "moment
 
 
 def _headings(velocity: np.ndarray, speed: np.ndarray) -> Float[np.ndarray, "moment"]:
-    """The direction of walking; who hardly moves keeps his own, and turns are smooth."""
+    """The direction of walking; who stands keeps his own and turns to the next before he sets off."""
     walking = np.flatnonzero(speed > _SLOWEST)
     if not len(walking):
         return np.zeros(len(speed))
     direction = np.unwrap(np.arctan2(velocity[walking, 1], velocity[walking, 0]))
-    kept = direction[np.clip(np.searchsorted(walking, np.arange(len(speed)), side="right") - 1, 0, None)]
+    moment = np.arange(len(speed))
+    later = np.clip(np.searchsorted(walking, moment), 0, len(walking) - 1)
+    before = np.clip(np.searchsorted(walking, moment, side="right") - 1, 0, None)
+    pause = np.maximum(walking[later] - walking[before], 1)
+    turned = 1 - (walking[later] - moment) / np.minimum(pause, _TURN_SECONDS * RATE)
+    share = np.clip(turned, 0.0, 1.0)
+    kept = direction[before] + share**2 * (3 - 2 * share) * (direction[later] - direction[before])
     return gaussian_filter1d(kept, _CALM_SECONDS * RATE, mode="nearest")

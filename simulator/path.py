@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Float
@@ -56,6 +57,8 @@ def path_through(
     if (speed is None) == (times is None):
         raise InputError("expected either a speed or times for the way-points")
     if times is not None:
+        if len(times) != len(places):
+            raise InputError(f"expected a time for each of the {len(places)} way-points, got {len(times)}")
         return _timed(places, np.asarray(times, float) + start)
     if speed is None or not 0 < speed <= FASTEST_WALK:
         raise InputError(f"expected a speed above 0 and up to {FASTEST_WALK} m/s, got {speed}")
@@ -75,14 +78,26 @@ def _at_speed(places: Float[np.ndarray, "waypoint 2"], speed: float, start: floa
 
 def _timed(places: Float[np.ndarray, "waypoint 2"], times: Float[np.ndarray, "waypoint"]) -> Path:
     """The path that passes each way-point at its time; equal way-points in turn are a stop."""
-    if len(times) != len(places):
-        raise InputError(f"expected a time for each of the {len(places)} way-points, got {len(times)}")
     if (np.diff(times) <= 0).any():
         raise InputError("expected times that grow from way-point to way-point")
     sampled = np.unique(np.concatenate([np.arange(times[0], times[-1], 1 / 120), times]))
-    return Path(times=sampled, places=_spline(times, places)(sampled))
+    rests = np.flatnonzero((np.diff(places, axis=0) == 0).all(axis=1))
+    ends = np.unique([0, len(places) - 1, *rests, *(rests + 1)])
+    curve = np.empty((len(sampled), 2))
+    for first, last in pairwise(ends.tolist()):
+        during = (sampled >= times[first]) & (sampled <= times[last])
+        part = slice(first, last + 1)
+        spline = _spline(times[part], places[part], from_rest=first - 1 in rests, to_rest=last in rests)
+        curve[during] = places[first] if first in rests else spline(sampled[during])
+    return Path(times=sampled, places=curve)
 
 
-def _spline(parameter: np.ndarray, places: np.ndarray) -> CubicSpline:
-    """A natural cubic spline; through two places it is a straight line."""
-    return CubicSpline(parameter, places, bc_type="natural")
+def _spline(
+    parameter: np.ndarray, places: np.ndarray, *, from_rest: bool = False, to_rest: bool = False
+) -> CubicSpline:
+    """A cubic spline, natural at its ends or still there; a natural one through two places is straight.
+
+    Still before and after a stop: else it would swing through the place and come back to it.
+    """
+    ends = [(1 if at_rest else 2, np.zeros(2)) for at_rest in (from_rest, to_rest)]
+    return CubicSpline(parameter, places, bc_type=tuple(ends))

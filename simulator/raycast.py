@@ -1,28 +1,28 @@
 """What every pixel's ray meets first; the only module that knows Mitsuba and Dr.Jit.
 
-Mitsuba tells the object and the face. Where on the face is then worked out here, in float64: so both backends
-give the same answer for the same face, and depth and material point agree to a float32's rounding.
+Mitsuba tells the face. Where on the face is then worked out here, in float64: so both backends give the same
+answer for the same face, and depth and material point agree to a float32's rounding.
 """
 
 import contextlib
 import functools
 import os
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from types import ModuleType
-from typing import Any
 
 import numpy as np
 from jaxtyping import Float32, Float64, Int64, Num, UInt32
 
-from recording.camera import Camera, pixel_grid, transformed
+from recording.camera import Camera, pixel_grid
 from recording.truth import MeshSequence
 from simulator.backend import LIBRARY_VARIABLE, Backend, likely_library
-from simulator.facepoints import met_weights, weight_from_ray
-from simulator.window import Window, window_around
+from simulator.facepoints import met_points
+from simulator.window import Window, camera_points, reachable_faces, shared_window, window_around
 
-_NOTHING = -1
+_NOTHING = np.uint32(0xFFFFFFFF)
+"""The face that a ray meets which meets none."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -41,10 +41,35 @@ class Hits:
     """Weight of the face's corner C; 0 where nothing is met."""
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Posture:
+    """The meshes as they are in one frame."""
+
+    world: Float32[np.ndarray, "vertex 3"]
+    """The vertices of all meshes, one after the other, world axes, metres."""
+    points: Float64[np.ndarray, "3 vertex"]
+    """The same in camera axes."""
+    faces: Int64[np.ndarray, "reachable"]
+    """The faces, numbered through all meshes, that are in `scene`."""
+    window: Window
+    """Where they are in the picture."""
+    scene: "_Scene | None"
+    """None where no ray reaches anything."""
+
+    def nearest(
+        self, origin: Float64[np.ndarray, "3"], directions: Float32[np.ndarray, "3 row column"]
+    ) -> UInt32[np.ndarray, "row column"]:
+        """Which one of `faces` each ray meets first; `_NOTHING` for none."""
+        if self.scene is None or directions.size == 0:
+            return np.full(directions.shape[1:], _NOTHING)
+        return self.scene.nearest(origin, directions)
+
+
 class RayCaster:
     """Casts one ray through every pixel's centre, in any frame of the meshes.
 
-    Only meshes that move are handed over again for a new frame. Any number of casters may live at once.
+    Nearly all the time goes into the tree that Mitsuba builds of the faces, in every frame: so it is given only
+    those that a pixel's ray can reach. Any number of casters may live at once.
     """
 
     def __init__(self, meshes: Mapping[int, MeshSequence], camera: Camera, backend: Backend) -> None:
@@ -54,73 +79,61 @@ class RayCaster:
         ids = [identity for identity in sorted(meshes) if len(meshes[identity].faces)]
         self._meshes = [meshes[identity] for identity in ids]
         self._camera = camera
-        self._rays = _unit_depth_rays(camera)
-        self._directions = (self._rays @ camera.world_from_camera[:3, :3].T).astype(np.float32)
+        rays = _unit_depth_rays(camera)
+        self._rays = np.ascontiguousarray(np.moveaxis(rays[..., :2], -1, 0))
+        directions = (rays @ camera.world_from_camera[:3, :3].T).astype(np.float32)
+        self._directions = np.ascontiguousarray(np.moveaxis(directions, -1, 0))
         counts = [len(mesh.faces) for mesh in self._meshes]
         self._first_face = np.cumsum([0, *counts])  # The faces are numbered through all meshes.
         self._mesh_of_face = np.repeat(np.arange(len(ids)), counts)
         self._id_of_mesh = np.array(ids, dtype=np.uint32)
-        self._weight_from_ray = np.empty((sum(counts), 3, 3))
-        self._corners = np.empty((sum(counts), 3, 3))
-        self._windows = [self._placed(number, 0) for number in range(len(ids))]
-        self._frame = 0
-        self._scene = _Scene(self._meshes, backend) if ids else None
+        first_vertex = np.cumsum([0, *(mesh.vertices.shape[1] for mesh in self._meshes)])
+        numbered = [mesh.faces + first for mesh, first in zip(self._meshes, first_vertex[:-1], strict=True)]
+        self._faces = np.concatenate(numbered).astype(np.uint32) if ids else np.zeros((0, 3), dtype=np.uint32)
+        self._backend = backend
+        self._posture: _Posture | None = None
+
+    def window(self, frame: int) -> Window:
+        """A window outside of which nothing is seen in the frame."""
+        return self._at(frame).window
 
     def cast(self, frame: int, window: Window | None = None) -> Hits:
         """What the pixels see in the frame: those of the window, or of the whole picture."""
-        self._advance(frame)
-        part = window or (slice(None), slice(None))
-        rays = self._rays[part]
-        pixel, met = self._nearest(part)
-        corners = self._corners[met]
-        weights = met_weights(rays.reshape(-1, 3)[pixel], self._weight_from_ray[met], corners)
+        posture = self._at(frame)
+        part = window or (slice(0, self._camera.height), slice(0, self._camera.width))
+        inner = shared_window(part, posture.window)
+        nearest = posture.nearest(self._camera.position, self._directions[:, *inner])
+        there = nearest != _NOTHING
+        met = posture.faces[nearest[there]]
+        depth, u, v = met_points(self._rays[:, *inner][:, there], posture.points[:, self._faces[met].T])
         mesh = self._mesh_of_face[met]
+        shape = (part[0].stop - part[0].start, part[1].stop - part[1].start)
+        place = tuple(slice(a.start - b.start, a.stop - b.start) for a, b in zip(inner, part, strict=True))
 
         def image(values: Num[np.ndarray, "hit"], nothing: np.generic) -> Num[np.ndarray, "row column"]:
-            pixels = np.full(rays.shape[:2], nothing)
-            pixels.flat[pixel] = values
+            pixels = np.full(shape, nothing)
+            pixels[place][there] = values
             return pixels
 
         return Hits(
-            depth=image((weights * corners[:, :, 2]).sum(axis=1), np.float32(np.nan)),
+            depth=image(depth, np.float32(np.nan)),
             objectid=image(self._id_of_mesh[mesh], np.uint32(0)),
             face=image(met - self._first_face[mesh], np.uint32(0)),
-            u=image(weights[:, 1], np.float32(0)),
-            v=image(weights[:, 2], np.float32(0)),
+            u=image(u, np.float32(0)),
+            v=image(v, np.float32(0)),
         )
 
-    def _nearest(self, part: Window) -> tuple[Int64[np.ndarray, "hit"], Int64[np.ndarray, "hit"]]:
-        """The pixels of the window that see a mesh, and the faces, numbered through, that they see."""
-        reachable = np.zeros(self._rays.shape[:2], dtype=bool)
-        for window in self._windows:
-            reachable[window] = True
-        pixel = np.flatnonzero(reachable[part])
-        if self._scene is None or len(pixel) == 0:
-            return pixel[:0], pixel[:0]
-        directions = self._directions[part].reshape(-1, 3)[pixel]
-        mesh, face = self._scene.nearest(self._camera.position, directions)
-        hit = mesh != _NOTHING
-        return pixel[hit], self._first_face[mesh[hit]] + face[hit]
-
-    def _advance(self, frame: int) -> None:
-        """Bring all that moves to the frame."""
-        if self._scene is None or frame == self._frame:
-            return
-        moving = [number for number, mesh in enumerate(self._meshes) if mesh.moving]
-        for number in moving:
-            self._windows[number] = self._placed(number, frame)
-        self._scene.move({number: self._meshes[number].vertices_at(frame) for number in moving})
-        self._frame = frame
-
-    def _placed(self, number: int, frame: int) -> Window:
-        """Work out how rays weigh the corners of the numbered mesh's faces; where the mesh can be seen."""
-        mesh = self._meshes[number]
-        vertices = mesh.vertices_at(frame).astype(np.float64)
-        corners = transformed(np.linalg.inv(self._camera.world_from_camera), vertices)[mesh.faces]
-        faces = slice(self._first_face[number], self._first_face[number + 1])
-        self._weight_from_ray[faces] = weight_from_ray(corners)
-        self._corners[faces] = corners
-        return window_around(self._camera, vertices)
+    def _at(self, frame: int) -> _Posture:
+        """The meshes as they are in the frame; made anew only where they have moved since the last one."""
+        vertices = [mesh.vertices_at(frame) for mesh in self._meshes]
+        world = np.concatenate(vertices) if vertices else np.zeros((0, 3), dtype=np.float32)
+        if self._posture is None or not np.array_equal(world, self._posture.world):
+            points = camera_points(self._camera, world)
+            faces = reachable_faces(self._camera, points, self._faces)
+            window = window_around(self._camera, points)
+            scene = _Scene(world, self._faces[faces], self._backend) if len(faces) else None
+            self._posture = _Posture(world=world, points=points, faces=faces, window=window, scene=scene)
+        return self._posture
 
 
 def casts_known_answer(backend: Backend) -> bool:
@@ -140,85 +153,62 @@ def casts_known_answer(backend: Backend) -> bool:
     return True
 
 
-def limit_threads(backend: Backend, count: int) -> None:
-    """Let this process cast with so many threads: the cores divided by the processes at work."""
-    _drjit(backend).set_thread_count(count)
-
-
 class _Scene:
-    """Meshes inside Mitsuba, in the order in which they were given."""
+    """A mesh inside Mitsuba, for one frame: a new one costs no more than a change to an old one."""
 
-    def __init__(self, meshes: Sequence[MeshSequence], backend: Backend) -> None:
+    def __init__(
+        self, vertices: Float32[np.ndarray, "vertex 3"], faces: UInt32[np.ndarray, "face 3"], backend: Backend
+    ) -> None:
         self._backend = backend
         mitsuba = _mitsuba(backend)
-        shapes = {_key(k): _mitsuba_mesh(mitsuba, _key(k), mesh) for k, mesh in enumerate(meshes)}
-        # Optimising would merge and reorder the meshes (Mitsuba issue 1796).
-        self._scene = mitsuba.load_dict({"type": "scene", **shapes}, optimize=False)
-        self._parameters = mitsuba.traverse(self._scene)
-        self._shapes = self._scene.shapes()
-        order = {_key(k): k for k in range(len(meshes))}
-        self._mesh_of_shape = [order[shape.id()] for shape in self._shapes]
-
-    def move(self, vertices: Mapping[int, Float32[np.ndarray, "_vertex 3"]]) -> None:
-        """Put the numbered meshes' vertices elsewhere, world axes, metres."""
-        _mitsuba(self._backend)
-        for k, mesh_vertices in vertices.items():
-            self._parameters[f"{_key(k)}.vertex_positions"] = mesh_vertices.ravel()
-        if vertices:
-            self._parameters.update()
+        mesh = mitsuba.Mesh("mesh", len(vertices), len(faces))
+        parameters = mitsuba.traverse(mesh)
+        parameters["vertex_positions"] = vertices.ravel()
+        parameters["faces"] = faces.ravel()
+        parameters.update()
+        # Optimising would reorder the mesh (Mitsuba issue 1796).
+        self._scene = mitsuba.load_dict({"type": "scene", "mesh": mesh}, optimize=False)
 
     def nearest(
-        self, origin: Float64[np.ndarray, "3"], directions: Float32[np.ndarray, "ray 3"]
-    ) -> tuple[Int64[np.ndarray, "ray"], Int64[np.ndarray, "ray"]]:
-        """The mesh's number, -1 for none, and the face that each ray meets first."""
+        self, origin: Float64[np.ndarray, "3"], directions: Float32[np.ndarray, "3 row column"]
+    ) -> UInt32[np.ndarray, "row column"]:
+        """The face that each ray meets first; `_NOTHING` for none."""
         cast = self._nearest_compiled if self._backend.name == "llvm" else self._nearest_one_by_one
-        return cast(_mitsuba(self._backend), origin.tolist(), directions)
+        rays = np.ascontiguousarray(directions.reshape(3, -1))
+        return cast(_mitsuba(self._backend), origin.tolist(), rays).reshape(directions.shape[1:])
 
     def _nearest_compiled(
-        self, mitsuba: ModuleType, origin: list[float], directions: Float32[np.ndarray, "ray 3"]
-    ) -> tuple[Int64[np.ndarray, "ray"], Int64[np.ndarray, "ray"]]:
-        drjit = _drjit(self._backend)
-        towards = mitsuba.Vector3f(np.ascontiguousarray(directions.T))
-        met = self._scene.ray_intersect_preliminary(mitsuba.Ray3f(mitsuba.Point3f(*origin), towards))
-        drjit.eval(met)
-
-        def numbers(shapes: Any) -> Int64[np.ndarray, "shape"]:
-            return np.array(drjit.reinterpret_array(mitsuba.UInt32, shapes)).astype(np.int64)
-
-        # A shape is known by its number in Mitsuba's registry: 0 for none, else as the process has it.
-        registered = numbers(self._scene.shapes_dr())
-        mesh_of_number = np.full(registered.max() + 1, _NOTHING)
-        mesh_of_number[registered] = self._mesh_of_shape
-        return mesh_of_number[numbers(met.shape)], np.array(met.prim_index).astype(np.int64)
+        self, mitsuba: ModuleType, origin: list[float], directions: Float32[np.ndarray, "3 ray"]
+    ) -> UInt32[np.ndarray, "ray"]:
+        # Made of one array, the number of rays would be compiled into the kernel: one for each window.
+        towards = mitsuba.Vector3f(*(mitsuba.Float(_aligned(axis)) for axis in directions))
+        rays = mitsuba.Ray3f(mitsuba.Point3f(*origin), towards)
+        met = self._scene.ray_intersect_preliminary(rays)
+        nothing = mitsuba.UInt32(int(_NOTHING))
+        return np.array(_drjit(self._backend).select(met.is_valid(), met.prim_index, nothing))
 
     def _nearest_one_by_one(
-        self, mitsuba: ModuleType, origin: list[float], directions: Float32[np.ndarray, "ray 3"]
-    ) -> tuple[Int64[np.ndarray, "ray"], Int64[np.ndarray, "ray"]]:
+        self, mitsuba: ModuleType, origin: list[float], directions: Float32[np.ndarray, "3 ray"]
+    ) -> UInt32[np.ndarray, "ray"]:
         start, nearest = mitsuba.Point3f(*origin), self._scene.ray_intersect_preliminary
-        mesh_of_shape = dict(zip(self._shapes, self._mesh_of_shape, strict=True))
-        mesh = np.full(len(directions), _NOTHING)
-        face = np.zeros(len(directions), dtype=np.int64)
-        for number, towards in enumerate(directions.tolist()):
+        face = np.full(directions.shape[1], _NOTHING)
+        for number, towards in enumerate(directions.T.tolist()):
             met = nearest(mitsuba.Ray3f(start, mitsuba.Vector3f(*towards)))
             if met.is_valid():
-                mesh[number], face[number] = mesh_of_shape[met.shape], met.prim_index
-        return mesh, face
+                face[number] = met.prim_index
+        return face
 
 
-def _key(number: int) -> str:
-    return f"mesh_{number}"
+def _aligned(values: Float32[np.ndarray, "ray"]) -> Float32[np.ndarray, "ray"]:
+    """A copy that begins at a multiple of 64 bytes: Dr.Jit compiles a kernel for each alignment that it meets."""
+    room = np.empty(len(values) + 16, dtype=np.float32)
+    begin = -room.ctypes.data % 64 // room.itemsize
+    copy = room[begin : begin + len(values)]
+    copy[:] = values
+    return copy
 
 
-def _mitsuba_mesh(mitsuba: ModuleType, key: str, mesh: MeshSequence) -> Any:
-    """The mesh in its first frame, as Mitsuba's own."""
-    inside = mitsuba.Mesh(key, mesh.vertices.shape[1], len(mesh.faces))
-    parameters = mitsuba.traverse(inside)
-    parameters["vertex_positions"] = mesh.vertices_at(0).ravel()
-    parameters["faces"] = mesh.faces.astype(np.uint32).ravel()
-    parameters.update()
-    return inside
-
-
+@functools.lru_cache(maxsize=2)
 def _unit_depth_rays(camera: Camera) -> Float64[np.ndarray, "row column 3"]:
     """The direction of each pixel's ray, camera axes, as long as it takes to be 1 m deep."""
     return camera.camera_from_pixel(pixel_grid(camera.height, camera.width), np.ones((camera.height, camera.width)))
@@ -236,6 +226,7 @@ def _libraries(wanted: str | None) -> tuple[ModuleType, ModuleType]:
     with contextlib.nullcontext() if wanted else _silent_standard_error():
         import drjit  # noqa: PLC0415 - the variable must be set first.
         import mitsuba  # noqa: PLC0415 - the same.
+    drjit.set_thread_count(1)  # Trees of a body's size are built no sooner by several; processes share the frames.
     return mitsuba, drjit
 
 

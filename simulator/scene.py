@@ -63,7 +63,7 @@ class Vary(Frozen):
     start_s: NotNegative = 0.3
     """Each walk starts sooner or later by up to so much, seconds."""
     phase: bool = True
-    """Whether each walk begins anywhere in the gait's cycle."""
+    """Whether the first frame finds each walker anywhere in the gait's cycle."""
     bodies: bool = True
     """Whether anybody may be anyone."""
     clearance_m: NotNegative = 0.6

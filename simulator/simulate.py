@@ -4,29 +4,27 @@ import hashlib
 import json
 import re
 from collections.abc import Iterator
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from recording.checks import validated
 from recording.errors import InputError
-from recording.frame import Frame, Labels
+from recording.frame import Frame
 from recording.metadata import Metadata, metadata_of
 from recording.progress import tracked
-from recording.recording import Recording, XRay
-from recording.store import write_recording
+from recording.recording import Recording
+from recording.store import new_recording
 from recording.truth import Truth
 from recording.version import VERSION
+from recording.xray import XRay
 from simulator.backend import Backend, BackendWish, find_backend
 from simulator.clearance import Clearance, smallest_clearance
-from simulator.raycast import RayCaster
+from simulator.pictures import Stage, pictures
 from simulator.scene import Scene, load_scene
 from simulator.stage import Actor, actors, walkers_centres
 from simulator.variation import varied
-
-NOTHING_THERE = 1
-"""The reason of a pixel whose ray meets nothing (`recording.frame.REASONS`)."""
+from simulator.workers import written_pictures
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -45,35 +43,38 @@ class Simulation:
         """Each object's mesh in every frame."""
         return {actor.record.id: actor.mesh for actor in self.cast}
 
-    def pictures(self, backend: Backend) -> Iterator[tuple[Frame, XRay]]:
-        """Each frame with its X-ray twin, one after the other, none kept.
+    @property
+    def stage(self) -> Stage:
+        """What is to be cast."""
+        return Stage(
+            camera=self.metadata.as_camera(),
+            moving={actor.record.id: actor.mesh for actor in self.cast if actor.record.moving},
+            still={actor.record.id: actor.mesh for actor in self.cast if not actor.record.moving},
+            frames=self.scene.frames,
+        )
 
-        The X-ray twin is every moving object's depth with nothing else on the scene.
-        """
-        camera = self.metadata.as_camera()
-        everything = RayCaster(self.truth, camera, backend)
-        alone = {a.record.id: RayCaster({a.record.id: a.mesh}, camera, backend) for a in self.cast if a.record.moving}
-        numbers = tracked(range(self.scene.frames), f"simulating {self.scene.name}", total=self.scene.frames)
-        for number in numbers:
-            xray = {objectid: caster.cast(number).depth for objectid, caster in alone.items()}
-            yield _ideal_frame(everything, number), xray
+    def pictures(self, backend: Backend) -> Iterator[tuple[Frame, XRay]]:
+        """Each frame with its X-ray twin, one after the other, none kept."""
+        return tracked(pictures(self.stage, backend), f"simulating {self.scene.name}", total=self.scene.frames)
 
 
 def prepared(
     scene: str | Path | Scene,
     *,
     seed: int = 0,
-    size: tuple[int, int] | None = None,
+    size: str | tuple[int, int] | None = None,
     frames: int | None = None,
     sensor: str | None = None,
 ) -> Simulation:
     """The scene under the seed, ready to be cast.
 
-    `size` (width, height) in pixels changes the picture, not the horizontal field of view; `frames` cuts
-    the scene short or lets it go on, `sensor` names another preset; what is None is as the scene says.
+    `size`, in pixels, is (width, height), `640x480`, or `2x` for twice the scene's own; it changes the picture,
+    not the horizontal field of view. `frames` cuts the scene short or lets it go on, `sensor` names another
+    preset; what is None is as the scene says.
     """
     given = scene if isinstance(scene, Scene) else load_scene(scene)
-    resolved = _changed(varied(given, seed), size=size, frames=frames, sensor=sensor)
+    pixels = picture_size(size, given) if isinstance(size, str) else size
+    resolved = _changed(varied(given, seed), size=pixels, frames=frames, sensor=sensor)
     cast = actors(resolved)
     document = resolved.model_dump(mode="json")
     metadata = metadata_of(
@@ -96,7 +97,7 @@ def simulate(
     scene: str | Path | Scene,
     *,
     seed: int = 0,
-    size: tuple[int, int] | None = None,
+    size: str | tuple[int, int] | None = None,
     frames: int | None = None,
     backend: BackendWish = "auto",
 ) -> Recording:
@@ -112,16 +113,27 @@ def simulate(
 
 
 def write_simulation(
-    simulation: Simulation, folder: Path, *, backend: BackendWish = "auto", overwrite: bool = False
+    simulation: Simulation,
+    folder: Path,
+    *,
+    backend: BackendWish = "auto",
+    workers: int = 1,
+    overwrite: bool = False,
 ) -> None:
-    """Cast the pictures straight to the folder: one at a time is in memory."""
-    write_recording(
-        folder,
-        metadata=simulation.metadata,
-        frames=simulation.pictures(find_backend(backend)),
-        truth=simulation.truth,
-        overwrite=overwrite,
-    )
+    """Cast the pictures straight to the folder: each worker has one in memory at a time.
+
+    Workers are processes; their number changes no byte. More than there are cores make nothing faster.
+    """
+    if workers < 1:
+        raise InputError(f"expected at least one worker, got {workers}")
+    scene, metadata = simulation.scene, simulation.metadata
+    with new_recording(folder, metadata=metadata, truth=simulation.truth, overwrite=overwrite) as partial:
+        written = written_pictures(
+            simulation.stage, partial, metadata=metadata, backend=find_backend(backend), workers=workers
+        )
+        with closing(written):
+            for _ in tracked(written, f"simulating {scene.name}", total=scene.frames):
+                pass
 
 
 def picture_size(text: str, scene: Scene) -> tuple[int, int]:
@@ -143,17 +155,6 @@ def _changed(scene: Scene, *, size: tuple[int, int] | None, frames: int | None, 
     if sensor is not None:
         document["sensor"] = {"preset": sensor}
     return validated(Scene, document, source=f"scene {scene.name!r}")
-
-
-def _ideal_frame(caster: RayCaster, number: int) -> Frame:
-    """The frame as a sensor without flaws sees it."""
-    hits = caster.cast(number)
-    return Frame(
-        depth=hits.depth,
-        labels=Labels(objectid=hits.objectid, face=hits.face, u=hits.u, v=hits.v),
-        clean_depth=hits.depth,
-        reason=np.where(np.isfinite(hits.depth), np.uint32(0), np.uint32(NOTHING_THERE)),
-    )
 
 
 def _digest(document: dict[str, object]) -> str:

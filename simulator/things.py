@@ -11,9 +11,7 @@ from pydantic import Field, field_validator, model_validator
 
 from recording.checks import Frozen, nearest_name
 from simulator.body import body_names
-
-FASTEST_WALK = 2.5
-"""Metres a second; whoever is faster runs, and the bodies cannot."""
+from simulator.path import FASTEST_WALK
 
 Positive = Annotated[float, Field(gt=0)]
 Ground = tuple[float, float]
@@ -28,7 +26,7 @@ class Person(Frozen):
     body: str
     """A body in `scenes/assets`."""
     waypoints: Annotated[tuple[Ground, ...], Field(min_length=2)]
-    """Places on the ground (x, y) that are passed, metres."""
+    """Places on the ground (x, y) that are passed, metres: two make a straight line, more a smooth curve."""
     speed: Annotated[float, Field(gt=0, le=FASTEST_WALK)] | None = None
     """Metres a second, the same all along; or else `times`."""
     times: tuple[float, ...] | None = None
@@ -36,7 +34,7 @@ class Person(Frozen):
     start: float = 0.0
     """When the first way-point is left, seconds after the first frame; negative: already under way."""
     phase: float = 0.0
-    """Where in the gait's cycle the walk begins, in cycles: 0 and 1 are the same."""
+    """Where in the gait's cycle the first frame finds the walker, in cycles: at 0 and 1 the left foot comes down."""
 
     @field_validator("body")
     @classmethod

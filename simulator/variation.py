@@ -5,9 +5,10 @@ import numpy as np
 from recording.errors import InputError
 from simulator.body import body_names
 from simulator.clearance import smallest_clearance
+from simulator.path import FASTEST_WALK
 from simulator.scene import Scene, Vary
 from simulator.stage import walkers_centres
-from simulator.things import FASTEST_WALK, Person
+from simulator.things import Person
 
 TRIES = 5000
 """Draws before the search for one in which everybody keeps clear is given up."""

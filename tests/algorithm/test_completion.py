@@ -76,7 +76,7 @@ def test_who_vanished_long_before_the_hole_is_not_continued() -> None:
 @pytest.mark.parametrize("end", [14, 17, 19, 22])
 def test_no_point_is_twice_in_a_frame_however_near_the_holes(gap: int, end: int) -> None:
     curve = curve_with_holes((20, 24), (25 + gap, 29 + gap))
-    paths = [seen(0, end, 0.1), seen(22, 25 + gap, 0.5), seen(26 + gap, 59, -0.4), seen(30 + gap, 59, 0.1)]
+    paths = [seen(0, end, 0.1), seen(22, 25 + gap, 0.5), seen(26 + gap, 59, -0.4), seen(30 + gap, 59, 0.3)]
     found = completion(paths, curve)
     own = {(number, first + step) for number, (first, path) in enumerate(paths) for step in range(len(path))}
     rows = list(zip(found.trajectory.tolist(), found.frame.tolist(), strict=True))

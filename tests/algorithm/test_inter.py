@@ -33,7 +33,7 @@ def straight(start: list[float], step: list[float], first: int, frames: int) -> 
 
 def links_of(curves: list[Curve], eps6_m: float = 0.15, weight: np.ndarray | None = None) -> set[tuple[int, int]]:
     weight = np.ones(len(curves)) if weight is None else weight
-    return set(linked(curves, weight, eps6_m=eps6_m, ends_frames=30.0, longest_frames=90.0))
+    return set(linked(curves, curves, weight, eps6_m=eps6_m, ends_frames=30.0, longest_frames=90.0))
 
 
 @given(seeds, st.integers(2, 7))

@@ -2,69 +2,21 @@
 
 import json
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import OpenEXR
 import pytest
-from jaxtyping import config
+from random_recording import FRAMES, HEIGHT, WIDTH, full_recording
 from worlds import small_camera
 
-from recording.camera import looking_at
 from recording.errors import InputError
-from recording.exr import write_channels
 from recording.frame import Frame, Labels
-from recording.metadata import ObjectRecord, metadata_of
+from recording.metadata import metadata_of
 from recording.recording import Recording, XRay, stripped
 from recording.store import load_recording, save_recording, write_recording
-from recording.truth import MeshSequence
-
-FRAMES, HEIGHT, WIDTH = 3, 4, 5
-
-
-def full_recording() -> Recording:
-    """Random numbers in every place that a recording has."""
-    generator = np.random.default_rng(1)
-    camera = replace(small_camera(WIDTH, HEIGHT), world_from_camera=looking_at((1.0, 2.0, 3.0), (0.0, 5.0, 1.0)))
-    objects = (
-        ObjectRecord(id=2, name="walker", kind="person", moving=True),
-        ObjectRecord(id=7, name="wall", kind="box", moving=False),
-    )
-    return Recording(
-        metadata=metadata_of(
-            camera, frames=FRAMES, fps=12.5, name="full", objects=objects, seed=3, timestamps=(0.0, 0.1, 0.3)
-        ),
-        frames=tuple(random_frame(generator) for _ in range(FRAMES)),
-        truth={2: random_mesh(generator, FRAMES), 7: random_mesh(generator, 1)},
-        xray=tuple({2: random_depth(generator)} for _ in range(FRAMES)),
-    )
-
-
-def random_depth(generator: np.random.Generator) -> np.ndarray:
-    depth = generator.uniform(0.5, 9.0, (HEIGHT, WIDTH)).astype(np.float32)
-    depth[generator.random(depth.shape) < 0.3] = np.nan
-    return depth
-
-
-def random_frame(generator: np.random.Generator) -> Frame:
-    labels = Labels(
-        objectid=generator.integers(0, 8, (HEIGHT, WIDTH), np.uint32),
-        face=generator.integers(0, 2**32 - 1, (HEIGHT, WIDTH), np.uint32),  # More than a float32 could hold.
-        u=generator.random((HEIGHT, WIDTH), np.float32),
-        v=generator.random((HEIGHT, WIDTH), np.float32),
-    )
-    reason = generator.integers(0, 4, (HEIGHT, WIDTH), np.uint32)
-    return Frame(depth=random_depth(generator), labels=labels, clean_depth=random_depth(generator), reason=reason)
-
-
-def random_mesh(generator: np.random.Generator, frames: int) -> MeshSequence:
-    return MeshSequence(
-        faces=generator.integers(0, 6, (4, 3), np.int32),
-        vertices=generator.normal(size=(frames, 6, 3)).astype(np.float32),
-    )
 
 
 def assert_same_frame(one: Frame, other: Frame) -> None:
@@ -190,148 +142,6 @@ def test_xrays_of_a_scene_in_which_nothing_moves_come_back(tmp_path: Path) -> No
     assert loaded.xray is None or [dict(xray) for xray in loaded.xray] == [{}, {}, {}]
 
 
-# ---- Bad input: one line that names the file ----
-
-
-def changed(key: str, value: object) -> Callable[[Path], None]:
-    """Set a key of recording.json, or remove it with None."""
-
-    def change(folder: Path) -> None:
-        document: dict[str, Any] = json.loads((folder / "recording.json").read_text())
-        part = document
-        *outer, last = key.split(".")
-        for name in outer:
-            part = part[name]
-        if value is None:
-            del part[last]
-        else:
-            part[last] = value
-        (folder / "recording.json").write_text(json.dumps(document))
-
-    return change
-
-
-def cut(name: str, share: float) -> Callable[[Path], None]:
-    def damage(folder: Path) -> None:
-        content = (folder / name).read_bytes()
-        (folder / name).write_bytes(content[: int(len(content) * share)])
-
-    return damage
-
-
-def with_depth(value: float, channel: str = "Z") -> Callable[[Path], None]:
-    def damage(folder: Path) -> None:
-        depth = np.ones((HEIGHT, WIDTH), np.float32)
-        channels = {"Z": depth.copy(), "Z.clean": depth.copy()}
-        channels[channel][2, 1] = value
-        write_channels(folder / "frames" / "000001.exr", channels, attributes={})
-
-    return damage
-
-
-def with_channels(**channels: np.ndarray) -> Callable[[Path], None]:
-    return lambda folder: write_channels(folder / "frames" / "000001.exr", channels, attributes={})
-
-
-def pickled_truth(folder: Path) -> None:
-    np.savez(folder / "truth.npz", faces_2=np.array([{"evil": 1}], object), vertices_2=np.zeros((1, 3, 3)))
-
-
-def without_vertices(folder: Path) -> None:
-    np.savez(folder / "truth.npz", faces_2=np.zeros((1, 3), np.int32))
-
-
-def more_frames(folder: Path) -> None:
-    changed("timestamps", None)(folder)
-    changed("frames", FRAMES + 1)(folder)
-
-
-def array_truth(folder: Path) -> None:
-    with (folder / "truth.npz").open("wb") as file:
-        np.save(file, np.ones(3))
-
-
-ONES = np.ones((HEIGHT, WIDTH), np.float32)
-BAD: dict[str, tuple[Callable[[Path], object], str]] = {
-    "missing frame": (lambda f: (f / "frames" / "000001.exr").unlink(), r"000001\.exr is missing"),
-    "truncated frame": (cut("frames/000001.exr", 0.6), r"000001\.exr: expected an OpenEXR file"),
-    "empty frame": (cut("frames/000001.exr", 0.0), r"000001\.exr: expected an OpenEXR file"),
-    "text for a frame": (lambda f: (f / "frames" / "000001.exr").write_text("hello"), r"000001\.exr: expected an Open"),
-    "NaN on disk": (with_depth(np.nan), r"000001\.exr.*nan in 'Z' at row 2, column 1"),
-    "infinite depth": (with_depth(np.inf), r"000001\.exr.*inf in 'Z' at row 2, column 1"),
-    "negative depth": (with_depth(-0.5), r"000001\.exr.*-0\.5 in 'Z' at row 2, column 1"),
-    "negative clean depth": (with_depth(-0.5, "Z.clean"), r"000001\.exr.*in 'Z\.clean' at row 2, column 1"),
-    "wrong size": (with_channels(Z=np.ones((6, 9), np.float32)), r"000001\.exr: expected 5x4 pixels.*got 9x6"),
-    "no depth": (with_channels(Y=ONES), r"000001\.exr: expected a channel 'Z', got \['Y'\]"),
-    "labels as floats": (with_channels(Z=ONES, objectid=ONES), r"000001\.exr: expected channel 'objectid' as uint32"),
-    "reason as floats": (with_channels(Z=ONES, reason=ONES), r"000001\.exr: expected channel 'reason' as uint32"),
-    "missing X-ray": (lambda f: (f / "xray" / "000001.exr").unlink(), r"xray/000001\.exr is missing"),
-    "no description": (lambda f: (f / "recording.json").unlink(), r"full: .*holds no recording\.json"),
-    "no JSON": (lambda f: (f / "recording.json").write_text("{"), r"recording\.json: expected JSON"),
-    "NaN in JSON": (changed("fps", float("nan")), r"recording\.json: expected JSON, but NaN"),
-    "a list": (lambda f: (f / "recording.json").write_text("[]"), r"recording\.json: "),
-    "unknown key": (changed("widht", 3), r"recording\.json: unknown key 'widht', did you mean 'width'\?"),
-    "unknown camera key": (changed("camera.fz", 3.0), r"'camera\.fz', did you mean 'f[xy]'\?"),
-    "missing key": (changed("fps", None), r"recording\.json: key 'fps' is missing"),
-    "missing camera key": (changed("camera.cx", None), r"recording\.json: key 'camera\.cx' is missing"),
-    "wrong type": (changed("frames", "many"), r"recording\.json: frames: .*got 'many'"),
-    "no frames": (changed("frames", 0), r"recording\.json: frames: .*got 0"),
-    "negative rate": (changed("fps", -1.0), r"recording\.json: fps: .*got -1\.0"),
-    "another format": (changed("format.name", "mp4"), r"recording\.json: format\.name: .*got 'mp4'"),
-    "a later format": (changed("format.version", 2), r"recording\.json: format\.version: .*got 2"),
-    "another unit": (changed("depth.unit", "inch"), r"recording\.json: depth\.unit: .*got 'inch'"),
-    "another pixel centre": (changed("pixel_centre", 0.0), r"recording\.json: pixel_centre: .*got 0\.0"),
-    "more frames promised": (more_frames, r"000003\.exr is missing: recording\.json promises 4 frames"),
-    "too few timestamps": (changed("timestamps", [0.0, 1.0]), r"recording\.json: .*3 timestamps.*got 2"),
-    "timestamps back": (changed("timestamps", [0.0, 2.0, 1.0]), r"recording\.json: .*timestamps that grow"),
-    "mirrored camera": (
-        changed("camera.world_from_camera", [[-1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]),
-        r"recording\.json: camera\.world_from_camera: expected a rotation",
-    ),
-    "truncated truth": (cut("truth.npz", 0.5), r"truth\.npz: "),
-    "empty truth": (cut("truth.npz", 0.0), r"truth\.npz: "),
-    "pickled truth": (pickled_truth, r"truth\.npz: "),
-    "half a mesh": (without_vertices, r"truth\.npz: the mesh of object 2 is damaged"),
-    "array for the truth": (array_truth, r"truth\.npz: "),
-}
-
-
-def read_all(folder: Path) -> None:
-    recording = load_recording(folder)
-    list(recording.frames)
-    list(recording.xray or ())
-    for mesh in (recording.truth or {}).values():
-        mesh.vertices_at(0)
-
-
-@pytest.fixture
-def _without_type_checks(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The checker looks into sequences at random, hence reads frames before anyone asks for them."""
-    monkeypatch.setattr(config, "jaxtyping_disable", True)
-
-
-@pytest.mark.usefixtures("_without_type_checks")
-@pytest.mark.parametrize("kind", BAD)
-def test_bad_input_is_one_line_that_names_the_file(stored: Path, kind: str, capfd: pytest.CaptureFixture[str]) -> None:
-    damage, message = BAD[kind]
-    damage(stored)
-    with pytest.raises(InputError, match=message) as refused:
-        read_all(stored)
-    assert "\n" not in str(refused.value)
-    assert capfd.readouterr().err == ""
-
-
-@pytest.mark.parametrize("kind", ["no", "file", "empty"])
-def test_no_recording_at_all_is_named(tmp_path: Path, kind: str) -> None:
-    place = tmp_path / "place"
-    if kind == "file":
-        place.write_text("hello")
-    if kind == "empty":
-        place.mkdir()
-    with pytest.raises(InputError, match=r"place: expected a recording, but it holds no recording\.json"):
-        load_recording(place)
-
-
 # ---- Writing: whole or not at all ----
 
 
@@ -364,7 +174,7 @@ def test_a_failure_while_frames_are_made_leaves_nothing(tmp_path: Path) -> None:
 def test_a_failure_while_overwriting_leaves_the_old_one(stored: Path) -> None:
     with pytest.raises(ZeroDivisionError):
         write_recording(stored, metadata=full_recording().metadata, frames=failing_frames(), overwrite=True)
-    read_all(stored)
+    assert_same_frame(load_recording(stored).frames[2], full_recording().frames[2])
     assert names(stored.parent) == ["full"]
 
 

@@ -15,7 +15,7 @@ from recording.recording import Recording, stripped
 from recording.truth import MeshSequence
 from recording.verify import verify
 
-NEAR, FAR = 1, 2
+NEAR, FAR, POST, WALKER = 1, 2, 3, 4
 CAMERA = Camera(width=8, height=6, fx=4.0, fy=4.0, cx=4.0, cy=3.0, world_from_camera=np.eye(4))
 
 
@@ -26,19 +26,30 @@ def plate(depth: np.ndarray, half_width: float) -> MeshSequence:
     return MeshSequence(faces=np.array([[0, 1, 2]], np.int32), vertices=vertices.astype(np.float32))
 
 
-def exact_recording() -> Recording:
-    """A plate that comes nearer before a still one that is wider; worked out by hand, not cast."""
-    meshes = {NEAR: plate(np.array([2.0, 1.8, 1.6]), 1.0), FAR: plate(np.array([4.0]), 60.0)}
-    pictures = [picture(meshes, number) for number in range(3)]
-    objects = (
-        ObjectRecord(id=NEAR, name="near", kind="plate", moving=True),
-        ObjectRecord(id=FAR, name="far", kind="plate", moving=False),
+def plates() -> dict[int, MeshSequence]:
+    """A plate that comes nearer before a still one that is wider, and a narrow still one before both."""
+    return {
+        NEAR: plate(np.array([2.0, 1.8, 1.6]), 1.0),
+        FAR: plate(np.array([4.0]), 60.0),
+        POST: plate(np.array([1.0]), 0.3),
+    }
+
+
+def exact_recording(meshes: dict[int, MeshSequence] | None = None, drawn: tuple[int, ...] = (FAR, NEAR)) -> Recording:
+    """The plates that are drawn, far ones first; worked out by hand, not cast."""
+    meshes = meshes or {identity: plates()[identity] for identity in drawn}
+    pictures = [picture({identity: meshes[identity] for identity in drawn}, number) for number in range(3)]
+    kinds = {NEAR: "plate", FAR: "plate", POST: "plate", WALKER: "person"}
+    objects = tuple(
+        ObjectRecord(id=identity, name=f"object {identity}", kind=kinds[identity], moving=meshes[identity].moving)
+        for identity in meshes
     )
+    out_of_view = {identity: np.full((6, 8), np.nan, np.float32) for identity in meshes if identity == WALKER}
     return Recording(
         metadata=metadata_of(CAMERA, frames=3, fps=30.0, objects=objects),
         frames=tuple(frame for frame, _ in pictures),
         truth=meshes,
-        xray=tuple({NEAR: depth} for _, depth in pictures),
+        xray=tuple({NEAR: depth, **out_of_view} for _, depth in pictures),
     )
 
 
@@ -48,8 +59,8 @@ def picture(meshes: dict[int, MeshSequence], number: int) -> tuple[Frame, np.nda
     objectid = np.zeros((6, 8), np.uint32)
     u, v = np.zeros((6, 8), np.float32), np.zeros((6, 8), np.float32)
     xray = depth.copy()
-    for identity in (FAR, NEAR):
-        corners = meshes[identity].vertices_at(number).astype(np.float64)
+    for identity, mesh in meshes.items():
+        corners = mesh.vertices_at(number).astype(np.float64)
         place = CAMERA.camera_from_pixel(pixel_grid(6, 8), np.full((6, 8), corners[0, 2]))
         weight_b = (place[..., 0] - corners[0, 0]) / (corners[1, 0] - corners[0, 0])
         weight_c = (place[..., 1] - corners[0, 1]) / (corners[2, 1] - corners[0, 1])
@@ -61,6 +72,14 @@ def picture(meshes: dict[int, MeshSequence], number: int) -> tuple[Frame, np.nda
     labels = Labels(objectid=objectid, face=np.zeros((6, 8), np.uint32), u=u, v=v)
     reason = np.where(np.isfinite(depth), 0, 1).astype(np.uint32)
     return Frame(depth=depth, labels=labels, clean_depth=depth, reason=reason), xray
+
+
+def with_walker(*corner: tuple[float, float, float]) -> Recording:
+    """The exact recording and somebody beside the picture, with a foot where each frame has it."""
+    foot = np.array(corner)[:, None] + np.array([[0, 0, 0], [0.2, 0, 1.7], [-0.2, 0, 1.7]])
+    walker = MeshSequence(faces=np.array([[0, 1, 2]], np.int32), vertices=foot.astype(np.float32))
+    meshes = {NEAR: plates()[NEAR], FAR: plates()[FAR], WALKER: walker}
+    return exact_recording(meshes)
 
 
 def with_last_frame(change: Callable[[Frame], dict[str, Any]]) -> Recording:
@@ -95,9 +114,19 @@ def one_pixel(image: np.ndarray | None, change: float) -> np.ndarray:
 def test_an_exact_recording_passes_with_next_to_no_error() -> None:
     report = verify(exact_recording())
     assert report.passes
-    assert {check.name: check.largest < 1e-5 for check in report.checks} == dict.fromkeys(
-        ["point", "projection", "unlabelled", "strange labels", "unexplained", "x-ray seen", "x-ray nearer"], True
-    )
+    assert [check.name for check in report.checks] == [
+        *("point", "projection", "nearest", "unlabelled", "strange labels", "unexplained", "flow", "return"),
+        *("x-ray missing", "x-ray seen", "x-ray nearer", "x-ray mesh"),
+    ]
+    assert all(check.largest < 1e-5 for check in report.checks)
+
+
+def test_what_stands_before_an_exact_recording_is_no_error() -> None:
+    recording = exact_recording(drawn=(FAR, NEAR, POST))
+    labels = recording.frames[0].labels
+    assert labels is not None
+    assert {1, 2, 3} == set(np.unique(labels.objectid).tolist())
+    assert not failed(recording)
 
 
 def test_the_largest_error_is_a_distance_in_metres() -> None:
@@ -117,7 +146,47 @@ def test_a_label_on_the_wrong_place_of_the_mesh_is_found() -> None:
         assert frame.labels is not None
         return changed_labels(frame, u=one_pixel(frame.labels.u, 0.7))
 
-    assert failed(with_last_frame(shifted)) == {"point", "projection"}
+    assert failed(with_last_frame(shifted)) == {"point", "projection", "return"}
+
+
+def test_a_wrong_depth_is_found() -> None:
+    wrong = with_last_frame(lambda frame: {"clean_depth": one_pixel(frame.clean_depth, 1.6 + 0.003)})
+    assert failed(wrong) == {"point", "nearest", "x-ray seen", "x-ray nearer"}
+
+
+def test_a_wrong_camera_is_found_by_all_that_is_measured() -> None:
+    exact = exact_recording()
+    camera = replace(CAMERA, cx=CAMERA.cx + 1)
+    metadata = metadata_of(camera, frames=3, fps=30.0, objects=exact.metadata.objects)
+    moved = Recording(metadata=metadata, frames=exact.frames, truth=exact.truth, xray=exact.xray)
+    assert failed(moved) == {"point", "projection", "nearest", "flow", "return", "x-ray mesh"}
+
+
+def test_a_picture_that_forgot_an_object_is_found() -> None:
+    meshes = {identity: plates()[identity] for identity in (FAR, NEAR, POST)}
+    assert failed(exact_recording(meshes, drawn=(FAR, NEAR))) == {"nearest"}
+
+
+def test_skin_that_stretches_like_rubber_is_found() -> None:
+    wider = plates()[NEAR].vertices.copy()
+    wider[2, 1, 0] += 1.0
+    meshes = {NEAR: replace(plates()[NEAR], vertices=wider), FAR: plates()[FAR]}
+    assert failed(exact_recording(meshes)) == {"return"}
+
+
+def test_a_foot_that_stands_passes() -> None:
+    report = verify(with_walker((90.0, 0, 0), (90.01, 0, 0.001), (90.3, 0, 0.1)))
+    assert report.passes
+    assert [check.name for check in report.checks[-2:]] == ["feet slide", "feet sink"]
+    assert report.checks[-2].largest == pytest.approx(0.01, abs=1e-4)
+
+
+def test_a_foot_that_slides_is_found() -> None:
+    assert failed(with_walker((90.0, 0, 0), (90.03, 0, 0), (90.06, 0, 0))) == {"feet slide"}
+
+
+def test_a_foot_that_sinks_is_found() -> None:
+    assert failed(with_walker((90.0, 0, -0.03), (90.0, 0, -0.03), (90.0, 0, 0))) == {"feet sink"}
 
 
 def test_depth_without_a_label_is_found() -> None:
@@ -141,19 +210,37 @@ def test_a_missing_return_needs_a_reason() -> None:
 
 
 @pytest.mark.parametrize(
-    ("shift_m", "found"), [(0.01, {"x-ray seen"}), (-0.01, {"x-ray seen", "x-ray nearer"}), (np.nan, {"x-ray seen"})]
+    ("shift_m", "found"),
+    [
+        (0.01, {"x-ray seen", "x-ray mesh"}),
+        (-0.01, {"x-ray seen", "x-ray nearer", "x-ray mesh"}),
+        (np.nan, {"x-ray missing", "x-ray mesh"}),
+    ],
 )
 def test_an_x_ray_that_contradicts_what_is_seen_is_found(shift_m: float, found: set[str]) -> None:
     exact = exact_recording()
     assert exact.xray is not None
-    xray = tuple({NEAR: depth[NEAR] + np.float32(shift_m)} for depth in exact.xray)
-    assert failed(Recording(metadata=exact.metadata, frames=exact.frames, truth=exact.truth, xray=xray)) == found
+    assert failed(with_xray(exact, [depth[NEAR] + np.float32(shift_m) for depth in exact.xray])) == found
+
+
+def test_an_x_ray_that_is_wrong_where_nobody_sees_it_is_found() -> None:
+    exact = exact_recording(drawn=(FAR, NEAR, POST))
+    assert exact.xray is not None
+    labels = [frame.labels.objectid for frame in exact.frames if frame.labels is not None]
+    hidden = [np.where(seen == NEAR, 0, np.float32(0.01)) for seen in labels]
+    shifted = [depth[NEAR] + shift for depth, shift in zip(exact.xray, hidden, strict=True)]
+    assert failed(with_xray(exact, shifted)) == {"x-ray mesh"}
 
 
 def test_a_moving_object_without_x_ray_is_found() -> None:
     exact = exact_recording()
     lacking = Recording(metadata=exact.metadata, frames=exact.frames, truth=exact.truth, xray=({}, {}, {}))
-    assert failed(lacking) == {"x-ray seen"}
+    assert failed(lacking) == {"x-ray missing"}
+
+
+def with_xray(recording: Recording, near: list[np.ndarray]) -> Recording:
+    xray = tuple({NEAR: depth} for depth in near)
+    return Recording(metadata=recording.metadata, frames=recording.frames, truth=recording.truth, xray=xray)
 
 
 def test_a_recording_without_truth_cannot_be_verified() -> None:
@@ -165,5 +252,5 @@ def test_a_mesh_that_is_missing_is_named() -> None:
     exact = exact_recording()
     assert exact.truth is not None
     lacking = Recording(metadata=exact.metadata, frames=exact.frames, truth={NEAR: exact.truth[NEAR]})
-    with pytest.raises(InputError, match=r"object 2 \(far\) has no mesh"):
+    with pytest.raises(InputError, match=r"object 2 \(object 2\) has no mesh"):
         verify(lacking)

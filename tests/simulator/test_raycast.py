@@ -10,7 +10,6 @@ from recording.truth import MeshSequence
 from simulator.backend import Backend, find_backend
 from simulator.raycast import Hits, RayCaster, casts_known_answer
 from simulator.shapes import ball, box, cone, cylinder, moved
-from simulator.window import window_around
 
 
 @pytest.fixture(params=["llvm", "scalar"])
@@ -198,7 +197,7 @@ def test_the_window_around_an_object_holds_all_of_it(backend: Backend) -> None:
     mesh, camera = crowd()[3], tripod()
     for frame in range(4):
         caster = RayCaster({3: mesh}, camera, backend)
-        window = window_around(camera, mesh.vertices_at(frame))
+        window = caster.window(frame)
         objectid = caster.cast(frame).objectid
         assert 0 < np.count_nonzero(objectid) == np.count_nonzero(caster.cast(frame, window).objectid)
         assert objectid[window].size < objectid.size / 4
@@ -206,8 +205,8 @@ def test_the_window_around_an_object_holds_all_of_it(backend: Backend) -> None:
 
 def test_an_empty_window_is_an_empty_picture(backend: Backend) -> None:
     beside = ball(0.5, (30.0, 0.0, 3.0))
-    window = window_around(ahead(), beside.vertices_at(0))
-    hits = RayCaster({1: beside}, ahead(), backend).cast(0, window)
+    caster = RayCaster({1: beside}, ahead(), backend)
+    hits = caster.cast(0, caster.window(0))
     assert hits.depth.size == 0
 
 
