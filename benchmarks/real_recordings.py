@@ -4,6 +4,12 @@ Reads gotpd_two, gotpd_beam and gotpd_walk from the folder that UNOCCLUDE_DATA n
 ../shared/data beside the project. Takes about 3 minutes on 2 cores.
 """
 
+import sys
+from pathlib import Path
+
+sys.path[0] = str(Path(__file__).parents[1])  # This folder's simulator.py would hide the package.
+
+
 import os
 import sys
 import tempfile

@@ -5,8 +5,13 @@ ours uses one. Takes about a minute; `pip install unocclude[bench]` installs the
 left out.
 """
 
+import sys
+from pathlib import Path
+
+sys.path[0] = str(Path(__file__).parents[1])  # This folder's simulator.py would hide the package.
+
+
 import cProfile
-import pstats
 import sys
 import tempfile
 import time
@@ -83,18 +88,19 @@ def compared(simulation: Simulation, backend: Backend) -> list[Row]:
         "picture (trimesh, Embree)": embree,
     }
     casts = {name: cast for name, maker in makers.items() if (cast := maker(few, backend)) is not None}
-    seconds, agree = dict.fromkeys(casts, 0.0), dict.fromkeys(casts, 0.0)
+    seconds, agree = dict.fromkeys(casts, 0.0), dict.fromkeys(casts, 0)
     for frame in range(few.frames):
         answers = {}
         for name, cast in casts.items():
             answers[name], spent = timed(lambda cast=cast, frame=frame: cast(frame))
             seconds[name] += spent
         for name, answer in answers.items():
-            agree[name] += float(np.mean(answer == answers["picture (Mitsuba)"])) / few.frames
+            agree[name] += np.count_nonzero(answer == answers["picture (Mitsuba)"])
     _, whole = timed(lambda: sum(1 for _ in pictures(few, backend)))
     reference = seconds.get("picture (Open3D)")
+    pixels = few.frames * few.camera.height * few.camera.width
     rows = [
-        {**row(name, spent / few.frames, reference and spent / reference), "same labels": agree[name]}
+        {**row(name, spent / few.frames, reference and spent / reference), "same labels": agree[name] / pixels}
         for name, spent in seconds.items()
     ]
     return [*rows, row("picture and X-ray, in memory", whole / few.frames, reference and whole / reference)]

@@ -3,6 +3,12 @@
 Takes about 5 seconds a seed and preset with LLVM.
 """
 
+import sys
+from pathlib import Path
+
+sys.path[0] = str(Path(__file__).parents[1])  # This folder's simulator.py would hide the package.
+
+
 from cyclopts import App
 
 import unocclude

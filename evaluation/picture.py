@@ -28,7 +28,7 @@ def draw_overview(recording: Recording, motions: Motions, path: Path, *, overwri
 
     Above: depth at five moments, with the points in the colours of their motions, the completed ones paler.
     Below: all observed points in the colours of their segments; the representatives, completed parts
-    dotted, in the picture and from above, truth in grey where it is known; all points, completed ones paler.
+    dotted, in the picture and from the camera's top, truth in grey where it is known; all points, completed ones paler.
     """
     if path.suffix not in (".png", ".svg"):
         raise InputError(f"{path}: expected a picture that ends in .png or .svg")
@@ -86,7 +86,7 @@ def _draw_plan(axes: Axes, recording: Recording, curves: tuple[Representative, .
     for curve in curves:
         place = transformed(camera_from_world, curve.position)
         _draw_curve(axes, place[:, [0, 2]], curve)
-    axes.set_title("from above" + (" (grey: truth)" if recording.xray is not None else ""))
+    axes.set_title("right and forward" + (" (grey: truth)" if recording.xray is not None else ""))
     axes.set_xlabel("right of the camera [m]")
     axes.set_ylabel("before the camera [m]")
     axes.set_aspect("equal", adjustable="datalim")

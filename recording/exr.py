@@ -13,6 +13,7 @@ from recording.xray import Cutout, CutoutXRay, XRay, trimmed_cutouts
 
 Channels = dict[str, np.ndarray]
 _CODING = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+"""Lossless, read everywhere. Run lengths take two thirds of the time to write, and up to three times the room."""
 _LABELS = {"objectid": np.uint32, "face": np.uint32, "bary.u": np.float32, "bary.v": np.float32}
 
 

@@ -28,6 +28,10 @@ _CLOSING_SECONDS = 1.3
 _CLOSING_SPEED = 0.6
 _SLOWEST = 0.05
 """Metres a second below which somebody stands."""
+_LIFT_METRES = 0.035
+_LIFTED_FROM = 0.04
+"""Metres a second above which a swinging foot has all of its lift: a swing that slows down must not scrape the ground,
+and one that ends half-way, because its owner stands, must come down."""
 _TURNING_RADIUS = 0.4
 """Metres from the turning axis to the feet, were a turn on the spot walked at its rate; more makes more steps."""
 _TURN_SECONDS = 1.2
@@ -137,7 +141,7 @@ def planned_steps(walk: Walk, *, side: int, half_width: float) -> Step:
         ground=place[:, :2],
         yaw=place[:, 2],
         pitch=_pitch(share / _STANCE, swing) * vigour,
-        lift=0.035 * np.sin(np.pi * swing) ** 2 * np.clip(walk.speed / 0.3, 0.0, 1.0),
+        lift=_LIFT_METRES * np.sin(np.pi * swing) ** 2 * np.clip(walk.speed / _LIFTED_FROM, 0.0, 1.0),
         stance=stance,
     )
 

@@ -1,5 +1,6 @@
 """Somebody who walks: a body that follows a planned walk with planted feet."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,10 +26,18 @@ class Walker:
     """Whether the left and the right foot are down."""
 
 
-def walking_person(body: Body, path: Path, times: Float[np.ndarray, "frame"], *, phase: float) -> Walker:
+def walking_person(
+    body: Body,
+    path: Path,
+    times: Float[np.ndarray, "frame"],
+    *,
+    phase: float,
+    holding: Mapping[str, Float[np.ndarray, "3 3"]] | None = None,
+) -> Walker:
     """The body walking along the path, in each frame; `phase` is that of the gait, in cycles, in the first.
 
-    World axes, metres, the ground at z = 0.
+    World axes, metres, the ground at z = 0. `holding` are local rotations of bones that keep still, as those of
+    an arm that holds something do (`simulator.dressing`).
     """
     hip = body.joint("thigh.L")
     walk = planned_walk(path, thigh_height=float(hip[2]), phase=phase, begin=float(times[0]), end=float(times[-1]))
@@ -38,6 +47,7 @@ def walking_person(body: Body, path: Path, times: Float[np.ndarray, "frame"], *,
     pelvis_turn = _about_z(walk.heading - 0.08 * swing)
     root = _pelvis(body, walk, pelvis_turn, ankles)
     rotations = {"pelvis": pelvis_turn} | _torso_and_arms(swing)
+    rotations |= {bone: np.broadcast_to(turn, pelvis_turn.shape) for bone, turn in (holding or {}).items()}
     for side, name in enumerate(SIDES):
         rotations |= _leg(body, name, (pelvis_turn, root), (ankles[side], steps[side]))
     chosen = np.clip(np.round((times - walk.time[0]) * RATE).astype(int), 0, len(walk.time) - 1)

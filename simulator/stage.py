@@ -11,6 +11,7 @@ from recording.metadata import ObjectRecord
 from recording.truth import MeshSequence
 from simulator import shapes
 from simulator.body import load_body
+from simulator.dressing import dressed, holding
 from simulator.path import Path, path_through
 from simulator.person import walking_person
 from simulator.scene import Scene
@@ -53,7 +54,9 @@ def walkers_centres(scene: Scene) -> list[Float[np.ndarray, "frame 2"]]:
 def _meshes(scene: Scene) -> Iterator[tuple[Person | Ball | Obstacle, str, MeshSequence]]:
     times = frame_times(scene)
     for person in scene.people:
-        walker = walking_person(load_body(person.body), _walk(person), times, phase=person.phase)
+        body = load_body(person.body)
+        held = holding(body, person.props)
+        walker = walking_person(dressed(body, person.props), _walk(person), times, phase=person.phase, holding=held)
         yield person, "person", walker.mesh
     for ball in scene.balls:
         yield ball, "ball", shapes.moved(shapes.ball(ball.radius), _flight(ball, times))

@@ -12,6 +12,7 @@ from pydantic import Field, field_validator, model_validator
 from recording.checks import Frozen, nearest_name
 from simulator.body import body_names
 from simulator.path import FASTEST_WALK
+from simulator.props import Prop, check_props
 
 Positive = Annotated[float, Field(gt=0)]
 Ground = tuple[float, float]
@@ -35,6 +36,8 @@ class Person(Frozen):
     """When the first way-point is left, seconds after the first frame; negative: already under way."""
     phase: float = 0.0
     """Where in the gait's cycle the first frame finds the walker, in cycles: at 0 and 1 the left foot comes down."""
+    props: tuple[Prop, ...] = ()
+    """What is carried or worn; it counts as part of the person."""
 
     @field_validator("body")
     @classmethod
@@ -45,6 +48,7 @@ class Person(Frozen):
 
     @model_validator(mode="after")
     def _path(self) -> "Person":
+        check_props(self.props)
         _check_timing(self.waypoints, self.speed, self.times)
         for (a, b), pace in zip(pairwise(self.waypoints), self._paces(), strict=True):
             if pace > FASTEST_WALK:
