@@ -13,20 +13,28 @@ instead of files:
 import json
 import sys
 import tomllib
-from collections.abc import Callable
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from cyclopts import App, CycloptsError, Parameter
+from cyclopts.validators import Number
 from rich.console import Console
 
 from algorithm.pipeline import solve
 from algorithm.settings import Settings, changed_settings, preset_settings, settings_from_file
+from evaluation.causes import causes_of
+from evaluation.contact_sheet import draw_contact_sheet
 from evaluation.doctor import diagnosis
 from evaluation.picture import draw_overview
-from evaluation.scores import check_belongs, evaluate
-from evaluation.summary import summary
+from evaluation.scores import check_belongs, evaluate, scores
+from evaluation.summary import aligned_text, summary
+from evaluation.table1 import PAPER, PaperRow, own_row, table_cells
+from evaluation.visibility import visibility_of
+from recording.checks import nearest_name
+from recording.correspondence import flow_between, places_of, track
 from recording.errors import InputError
 from recording.importing import Calibration, import_images
 from recording.motions import Motions
@@ -36,23 +44,27 @@ from recording.recording import Recording
 from recording.store import load_recording, save_recording
 from recording.verify import verify
 from recording.version import VERSION
-from simulator.scene import load_scene
-from simulator.simulate import picture_size, prepared, simulate, write_simulation
+from simulator.simulate import prepared, simulate, write_simulation
 
 __all__ = [
     "InputError",
     "Motions",
     "Recording",
     "Settings",
+    "causes_of",
     "evaluate",
+    "flow_between",
     "load_motions",
     "load_recording",
+    "places_of",
     "preset_settings",
     "save_motions",
     "save_recording",
     "simulate",
     "solve",
+    "track",
     "verify",
+    "visibility_of",
 ]
 
 messages = Console(stderr=True, soft_wrap=True, highlight=False)
@@ -79,13 +91,9 @@ class Common:
         if not self.quiet:
             messages.print(message, markup=False)
 
-    def run(self, work: Callable[[], None]) -> None:
-        """Do the work, with progress bars unless it is to be quiet."""
-        if self.quiet:
-            work()
-            return
-        with progress_shown(messages):
-            work()
+    def progress(self) -> AbstractContextManager[None]:
+        """Within this block long work shows a progress bar, unless it is to be quiet."""
+        return nullcontext() if self.quiet else progress_shown(messages)
 
 
 QUIET = Common()
@@ -109,7 +117,8 @@ def demo(*, output: Output = Path("demo"), seed: int = 0, common: Common = QUIET
     """
     simulation = prepared("wall", seed=seed)
     place = output / simulation.scene.name
-    common.run(lambda: write_simulation(simulation, place, overwrite=common.overwrite))
+    with common.progress():
+        write_simulation(simulation, place, overwrite=common.overwrite)
     common.say(f"simulated {place}: {simulation.scene.frames} frames, {simulation.clearance.sentence}")
     solve_command(place, common=common)
     recording, motions = load_recording(place), load_motions(place / "motions.parquet")
@@ -128,6 +137,7 @@ def simulate_command(
     frames: int | None = None,
     size: str | None = None,
     sensor: str | None = None,
+    workers: Annotated[int, Parameter(validator=Number(gte=1))] = 1,
     backend: Backend = "auto",
     common: Common = QUIET,
 ) -> None:
@@ -142,15 +152,16 @@ def simulate_command(
         frames: Number of frames in place of the scene's own.
         size: Picture size in pixels, `640x480`, or `2x` for twice the scene's own.
         sensor: Sensor preset in place of the scene's own.
+        workers: Processes that cast and write frames; the files are the same for any number.
         backend: Ray caster: compiled (`llvm`), interpreted (`scalar`), or what works here.
     """
     if not scenes:
         raise InputError("expected at least one scene, got none: try 'unocclude simulate wall -o recordings'")
     for name in scenes:
-        pixels = None if size is None else picture_size(size, load_scene(name))
-        simulation = prepared(name, seed=seed, size=pixels, frames=frames, sensor=sensor)
+        simulation = prepared(name, seed=seed, size=size, frames=frames, sensor=sensor)
         place = output / simulation.scene.name
-        common.run(lambda: write_simulation(simulation, place, backend=backend, overwrite=common.overwrite))  # noqa: B023 (run at once)
+        with common.progress():
+            write_simulation(simulation, place, backend=backend, workers=workers, overwrite=common.overwrite)
         common.say(f"simulated {place}: {simulation.scene.frames} frames, {simulation.clearance.sentence}")
 
 
@@ -188,13 +199,10 @@ def import_command(
         masks: Names of images of object ids, one for each depth image, for the evaluation.
     """
     calibration = Calibration(fx=fx, fy=fy, cx=cx, cy=cy, fps=fps, scale=scale, pixel_centre=pixel_centre)
-
-    def work() -> None:
-        overwrite = common.overwrite
-        import_images(source, output, calibration=calibration, pattern=pattern, masks=masks, overwrite=overwrite)
-
-    common.run(work)
-    common.say(f"imported {load_recording(output).metadata.frames} frames to {output}")
+    overwrite = common.overwrite
+    with common.progress():
+        made = import_images(source, output, calibration=calibration, pattern=pattern, masks=masks, overwrite=overwrite)
+    common.say(f"imported {made.frames} frames to {output}")
 
 
 @app.command(name="solve", help_epilogue=SETTINGS_HELP)
@@ -226,14 +234,11 @@ def solve_command(
     if settings is not None:
         chosen = settings_from_file(chosen, settings)
     chosen = changed_settings(chosen, dict(map(_key_and_value, set_)), source="--set")
-
-    def work() -> None:
+    with common.progress():
         motions = solve(found, chosen)
-        save_motions(motions, place, overwrite=common.overwrite)
-        total = motions.making.seconds["total"]
-        common.say(f"solved {place}: {len(motions.motion_ids)} motions in {total:.1f} s")
-
-    common.run(work)
+    save_motions(motions, place, overwrite=common.overwrite)
+    total = motions.making.seconds["total"]
+    common.say(f"solved {place}: {len(motions.motion_ids)} motions in {total:.1f} s")
 
 
 @app.command(name="evaluate")
@@ -257,7 +262,8 @@ def evaluate_command(
     warning = check_belongs(truth, answer)
     if warning is not None:
         common.say(f"warning: {warning}")
-    found = evaluate(truth, answer)
+    with common.progress():
+        found = scores(truth, answer)
     print(json.dumps(found, allow_nan=False) if json_ else summary(found))
 
 
@@ -270,7 +276,8 @@ def verify_command(recording: Path, *, common: Common = QUIET) -> None:
     Args:
         recording: The recording's folder.
     """
-    report = verify(load_recording(recording))
+    with common.progress():
+        report = verify(load_recording(recording))
     print(report.text)
     if not report.passes:
         sys.exit(1)
@@ -290,6 +297,58 @@ def draw_command(recording: Path, motions: Path | None = None, *, output: Output
     answer = load_motions(motions or recording / "motions.parquet")
     draw_overview(load_recording(recording), answer, output, overwrite=common.overwrite)
     common.say(f"drawn {output}")
+
+
+@app.command(name="contact-sheet")
+def contact_sheet_command(recording: Path, *, output: Output, common: Common = QUIET) -> None:
+    """Draw six frames of a recording: depth, objects, and why returns are missing.
+
+    Example: `unocclude contact-sheet recordings/wall -o sheet.png`
+
+    Args:
+        recording: The recording's folder.
+        output: The picture, PNG or SVG by its ending.
+    """
+    draw_contact_sheet(load_recording(recording), output, overwrite=common.overwrite)
+    common.say(f"drawn {output}")
+
+
+@app.command(name="table1")
+def table1_command(
+    *,
+    scenes: Annotated[tuple[str, ...], Parameter(consume_multiple=True, negative="")] = ("all",),
+    output: Annotated[Path | None, Parameter(name=["--output", "-o"])] = None,
+    size: str | None = None,
+    common: Common = QUIET,
+) -> None:
+    """Print Table 1 of the paper beside ours, measured from the recordings: "paper | ours" in every cell.
+
+    Example: `unocclude table1 --scenes wall house`
+
+    Args:
+        scenes: Names of scenes, or `all`.
+        output: Folder to keep the recordings in; those that it holds already are measured as they are.
+        size: Picture size in place of the scenes' own, such as `2x`.
+    """
+    with common.progress():
+        rows = [(row, own_row(found, visibility_of(found))) for row, found in _table1_recordings(scenes, output, size)]
+    print(aligned_text(table_cells(rows)))
+
+
+def _table1_recordings(
+    scenes: tuple[str, ...], folder: Path | None, size: str | None
+) -> Iterator[tuple[PaperRow, Recording]]:
+    """The paper's rows that were asked for, each with a recording of its scene."""
+    known = {row.scene: row for row in PAPER}
+    for name in known if "all" in scenes else scenes:
+        if name not in known:
+            raise InputError(f"--scenes: unknown scene {name!r}, {nearest_name(name, known)}")
+        if folder is None:
+            yield known[name], simulate(name, size=size)
+            continue
+        if not (folder / name).exists():
+            write_simulation(prepared(name, size=size), folder / name)
+        yield known[name], load_recording(folder / name)
 
 
 @app.command

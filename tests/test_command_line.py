@@ -1,0 +1,166 @@
+"""The command line: the whole path, and one clear line with exit status 2 for what is wrong."""
+
+import json
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from worlds import recorded, small_camera, sphere
+
+import unocclude
+
+SCENE = """
+name = "small"
+frames = 12
+fps = 15
+[camera]
+width = 48
+height = 36
+position = [0, -4, 1.2]
+look_at = [0, 0, 1]
+horizontal_fov_deg = 60
+[[people]]
+body = "man"
+waypoints = [[-1, 0], [1, 0]]
+speed = 1.2
+"""
+
+
+def run(*arguments: object) -> int:
+    """The exit status of a command line."""
+    try:
+        unocclude.main([str(argument) for argument in arguments])
+    except SystemExit as stop:
+        return int(stop.code or 0)
+    return 0
+
+
+@pytest.fixture(scope="module")
+def solved(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A small recording that was simulated and solved by the command line."""
+    folder = tmp_path_factory.mktemp("recordings")
+    (folder / "small.toml").write_text(SCENE, encoding="utf-8")
+    assert run("simulate", folder / "small.toml", "-o", folder, "--backend", "scalar", "--quiet") == 0
+    assert run("solve", folder / "small", "--quiet", "--set", "eps4=3") == 0
+    return folder / "small"
+
+
+def test_simulate_solve_and_evaluate_make_scores_under_the_contracts_keys(
+    solved: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run("evaluate", solved, "--json") == 0
+    scores = json.loads(capsys.readouterr().out)
+    assert list(scores) == [
+        *("scene", "frames", "objects", "points_per_frame", "holes", "longest_hole_frames", "coverage"),
+        *("trajectories", "segments", "motions", "identity", "completion", "links", "seconds", "version", "preset"),
+    ]
+    assert scores["objects"] == 1
+    assert scores["preset"] == "default"
+
+
+def test_verify_passes_what_was_simulated_and_fails_what_was_changed(solved: Path, tmp_path: Path) -> None:
+    assert run("verify", solved) == 0
+    recording = unocclude.load_recording(solved)
+    document = json.loads((solved / "recording.json").read_text(encoding="utf-8"))
+    document["camera"]["cx"] += 2.0
+    unocclude.save_recording(recording, tmp_path / "moved")
+    (tmp_path / "moved" / "recording.json").write_text(json.dumps(document), encoding="utf-8")
+    assert run("verify", tmp_path / "moved") == 1
+
+
+def test_nothing_of_the_truth_leaks_into_the_solver(solved: Path) -> None:
+    recording = unocclude.load_recording(solved)
+    stripped = unocclude.Recording(
+        metadata=recording.metadata.model_copy(update={"objects": None, "scene": None, "seed": None}),
+        frames=tuple(type(frame)(depth=frame.depth) for frame in recording.frames),
+    )
+    whole, bare = unocclude.solve(recording), unocclude.solve(stripped)
+    for column in ("frame", "trajectory", "position", "motion", "source"):
+        np.testing.assert_array_equal(getattr(whole, column), getattr(bare, column))
+
+
+def test_results_are_not_overwritten_unless_asked_for(solved: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    before = (solved / "motions.parquet").read_bytes()
+    assert run("solve", solved) == 2
+    assert "--overwrite" in capsys.readouterr().err
+    assert (solved / "motions.parquet").read_bytes() == before
+
+
+def test_pictures_are_drawn(solved: Path, tmp_path: Path) -> None:
+    for command, name in (("draw", "overview.png"), ("draw", "overview.svg"), ("contact-sheet", "sheet.png")):
+        assert run(command, solved, "-o", tmp_path / name, "--quiet") == 0
+        assert (tmp_path / name).stat().st_size > 5000
+    height, width, _ = cv2.imread(str(tmp_path / "overview.png")).shape
+    assert width > height > 400
+
+
+def test_images_are_imported_and_solved(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    ball = recorded([sphere(lambda frame: (-0.5 + 0.05 * frame, 0, 2), 0.3)], frames=15, moving=[True])
+    images = tmp_path / "images"
+    images.mkdir()
+    for number, frame in enumerate(ball.frames):
+        cv2.imwrite(str(images / f"depth_{number}.png"), np.nan_to_num(frame.depth * 1000).astype(np.uint16))
+    camera = small_camera()
+    focal = ("--fx", camera.fx, "--fy", camera.fy, "--cx", camera.cx - 0.5, "--cy", camera.cy - 0.5)
+    place = tmp_path / "ball"
+    assert run("import", images, "--pattern", "depth_*.png", *focal, "--fps", 30, "-o", place) == 0
+    assert run("solve", place) == 0
+    said = capsys.readouterr().err
+    assert "imported 15 frames" in said
+    assert "1 motions" in said
+    motions = unocclude.load_motions(place / "motions.parquet")
+    assert len(motions.motion_ids) == 1
+
+
+WRONG = {
+    "no such command": ("frob",),
+    "no such option": ("solve", "{recording}", "--presett", "paper"),
+    "no such preset": ("solve", "{recording}", "--preset", "best"),
+    "no such setting": ("solve", "{recording}", "--set", "eps9=1", "--overwrite"),
+    "impossible setting": ("solve", "{recording}", "--set", "eps1=-1", "--overwrite"),
+    "setting without value": ("solve", "{recording}", "--set", "eps1", "--overwrite"),
+    "no recording": ("solve", "{empty}"),
+    "no motions": ("evaluate", "{recording}", "{empty}/motions.parquet"),
+    "no scene": ("simulate", "wal", "-o", "{empty}"),
+    "no scenes": ("simulate", "-o", "{empty}"),
+    "no frames": ("simulate", "wall", "-o", "{empty}", "--frames", "0"),
+    "no size": ("simulate", "wall", "-o", "{empty}", "--size", "big"),
+    "no workers": ("simulate", "wall", "-o", "{empty}", "--workers", "0"),
+    "no images": ("import", "{empty}", "--fx", 1, "--fy", 1, "--cx", 1, "--cy", 1, "--fps", 1, "-o", "{empty}/x"),
+    "no picture": ("draw", "{recording}", "-o", "{empty}/picture.doc"),
+    "no row of the table": ("table1", "--scenes", "walls"),
+}
+
+
+@pytest.mark.parametrize("what", WRONG)
+def test_wrong_input_gets_one_line_and_status_2(
+    what: str, solved: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = [str(part).format(recording=solved, empty=tmp_path) for part in WRONG[what]]
+    assert run(*arguments) == 2
+    output = capsys.readouterr()
+    assert output.err.startswith("unocclude: ")
+    assert output.err.count("\n") == 1
+    assert output.out == ""
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    "command",
+    ["demo", "simulate", "import", "solve", "evaluate", "verify", "draw", "contact-sheet", "table1", "doctor"],
+)
+def test_every_command_has_help_with_an_example(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(command, "--help") == 0
+    assert f"Example: unocclude {command}" in " ".join(capsys.readouterr().out.split())
+
+
+def test_solves_help_lists_every_setting(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run("solve", "--help") == 0
+    text = capsys.readouterr().out
+    assert all(name in text for name in unocclude.Settings.model_fields)
+
+
+def test_doctor_names_the_backend(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run("doctor") == 0
+    assert "rendering backend: " in capsys.readouterr().out
