@@ -23,6 +23,7 @@ from cyclopts import App, CycloptsError, Parameter
 from cyclopts.validators import Number
 from rich.console import Console
 
+from algorithm.depth_image import depth_range
 from algorithm.pipeline import solve
 from algorithm.settings import Settings, changed_settings, preset_settings, settings_from_file
 from evaluation.causes import causes_of
@@ -44,6 +45,7 @@ from recording.recording import Recording
 from recording.store import load_recording, save_recording
 from recording.verify import verify
 from recording.version import VERSION
+from simulator.scene import scene_names
 from simulator.simulate import prepared, simulate, write_simulation
 
 __all__ = [
@@ -81,10 +83,8 @@ app = App(
 class Common:
     """What every command takes."""
 
-    quiet: bool = False
-    """No messages and no progress bar."""
-    overwrite: bool = False
-    """Replace results that exist already."""
+    quiet: Annotated[bool, Parameter(negative="")] = False
+    """No messages and no progress bar; results are printed all the same."""
 
     def say(self, message: str) -> None:
         """A message on standard error, unless it is to be quiet."""
@@ -96,7 +96,16 @@ class Common:
         return nullcontext() if self.quiet else progress_shown(messages)
 
 
-QUIET = Common()
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class Writing(Common):
+    """What every command takes that writes files."""
+
+    overwrite: Annotated[bool, Parameter(negative="")] = False
+    """Replace results that exist already, with everything in their folders."""
+
+
+COMMON, WRITING = Common(), Writing()
 SETTINGS_HELP = "\n".join(
     ["Settings for `--set` and `--settings`, with the values of the preset `default`:", ""]
     + [f"- `{name}` = {field.default}: {field.description}" for name, field in Settings.model_fields.items()]
@@ -106,7 +115,7 @@ Output = Annotated[Path, Parameter(name=["--output", "-o"])]
 
 
 @app.command
-def demo(*, output: Output = Path("demo"), seed: int = 0, common: Common = QUIET) -> None:
+def demo(*, output: Output = Path("demo"), seed: int = 0, common: Writing = WRITING) -> None:
     """Run the main job on the scene `wall`: simulate, solve, evaluate, draw.
 
     Example: `unocclude demo -o demo`
@@ -129,7 +138,7 @@ def demo(*, output: Output = Path("demo"), seed: int = 0, common: Common = QUIET
     print(f"pictures: {output / 'overview.png'}")
 
 
-@app.command(name="simulate")
+@app.command(name="simulate", help_epilogue="Scenes: " + ", ".join(scene_names()))
 def simulate_command(
     *scenes: str,
     output: Output,
@@ -139,7 +148,7 @@ def simulate_command(
     sensor: str | None = None,
     workers: Annotated[int, Parameter(validator=Number(gte=1))] = 1,
     backend: Backend = "auto",
-    common: Common = QUIET,
+    common: Writing = WRITING,
 ) -> None:
     """Render scenes to recordings `OUTPUT/<name>/`, with the truth about everything hidden.
 
@@ -179,7 +188,7 @@ def import_command(
     pixel_centre: float = 0.0,
     pattern: str = "*.png",
     masks: str | None = None,
-    common: Common = QUIET,
+    common: Writing = WRITING,
 ) -> None:
     """Make a recording of a folder of 16-bit depth images.
 
@@ -202,7 +211,12 @@ def import_command(
     overwrite = common.overwrite
     with common.progress():
         made = import_images(source, output, calibration=calibration, pattern=pattern, masks=masks, overwrite=overwrite)
-    common.say(f"imported {made.frames} frames to {output}")
+    first = load_recording(output).frames[0]
+    low, high = depth_range([first.depth])
+    common.say(
+        f"imported {made.frames} frames of {made.width}x{made.height} to {output}; the first has depths from "
+        f"{low:.2f} to {high:.2f} m and no return at {1 - first.seen.mean():.0%} of its pixels"
+    )
 
 
 @app.command(name="solve", help_epilogue=SETTINGS_HELP)
@@ -213,7 +227,7 @@ def solve_command(
     preset: Literal["default", "paper"] = "default",
     settings: Path | None = None,
     set_: Annotated[tuple[str, ...], Parameter(name="--set", negative="")] = (),
-    common: Common = QUIET,
+    common: Writing = WRITING,
 ) -> None:
     """Find the motions in a recording and complete them where they were hidden.
 
@@ -247,7 +261,7 @@ def evaluate_command(
     motions: Path | None = None,
     *,
     json_: Annotated[bool, Parameter(name="--json")] = False,
-    common: Common = QUIET,
+    common: Common = COMMON,
 ) -> None:
     """Score motions against the truth.
 
@@ -262,13 +276,15 @@ def evaluate_command(
     warning = check_belongs(truth, answer)
     if warning is not None:
         common.say(f"warning: {warning}")
+    if all(frame.labels is None for frame in truth.frames[:1]):
+        common.say("warning: the recording holds no truth to score against: import it with --masks")
     with common.progress():
         found = scores(truth, answer)
     print(json.dumps(found, allow_nan=False) if json_ else summary(found))
 
 
 @app.command(name="verify")
-def verify_command(recording: Path, *, common: Common = QUIET) -> None:
+def verify_command(recording: Path, *, common: Common = COMMON) -> None:
     """Check a simulated recording against itself; exit status 1 where a bound is passed.
 
     Example: `unocclude verify recordings/wall`
@@ -284,7 +300,7 @@ def verify_command(recording: Path, *, common: Common = QUIET) -> None:
 
 
 @app.command(name="draw")
-def draw_command(recording: Path, motions: Path | None = None, *, output: Output, common: Common = QUIET) -> None:
+def draw_command(recording: Path, motions: Path | None = None, *, output: Output, common: Writing = WRITING) -> None:
     """Draw a solved recording: frames, segments, representatives, completed motion.
 
     Example: `unocclude draw recordings/wall -o wall.png`
@@ -300,7 +316,7 @@ def draw_command(recording: Path, motions: Path | None = None, *, output: Output
 
 
 @app.command(name="contact-sheet")
-def contact_sheet_command(recording: Path, *, output: Output, common: Common = QUIET) -> None:
+def contact_sheet_command(recording: Path, *, output: Output, common: Writing = WRITING) -> None:
     """Draw six frames of a recording: depth, objects, and why returns are missing.
 
     Example: `unocclude contact-sheet recordings/wall -o sheet.png`
@@ -319,7 +335,7 @@ def table1_command(
     scenes: Annotated[tuple[str, ...], Parameter(consume_multiple=True, negative="")] = ("all",),
     output: Annotated[Path | None, Parameter(name=["--output", "-o"])] = None,
     size: str | None = None,
-    common: Common = QUIET,
+    common: Common = COMMON,
 ) -> None:
     """Print Table 1 of the paper beside ours, measured from the recordings: "paper | ours" in every cell.
 
@@ -352,7 +368,7 @@ def _table1_recordings(
 
 
 @app.command
-def doctor() -> None:
+def doctor(*, common: Common = COMMON) -> None:
     """Tell what this machine has: versions, rendering backend, cores, and what is missing.
 
     Example: `unocclude doctor`
@@ -367,6 +383,9 @@ def main(arguments: list[str] | None = None) -> None:
     except (InputError, CycloptsError) as error:
         messages.print("unocclude: " + " ".join(str(error).split()), markup=False)
         sys.exit(2)
+    except KeyboardInterrupt:
+        messages.print("unocclude: interrupted; nothing half-written is left")
+        sys.exit(130)
 
 
 def _key_and_value(text: str) -> tuple[str, Any]:

@@ -27,9 +27,9 @@ def whole_folder(path: Path, *, overwrite: bool = False) -> Iterator[Path]:
     """An empty folder to fill, which becomes `path` when the block ends well and vanishes when it does not.
 
     What a killed run left behind under the working name is removed first. With `overwrite` an old result
-    stays in its place until the new one is complete.
+    stays in its place until the new one is complete. An empty folder in that place is nothing to lose.
     """
-    _refuse_existing(path, overwrite=overwrite)
+    _refuse_existing(path, overwrite=overwrite or (path.is_dir() and not any(path.iterdir())))
     if path.exists() and not path.is_dir():
         raise InputError(f"{path}: expected a folder to replace, got a file: choose another place")
     partial = _partial_name(path)
@@ -51,7 +51,11 @@ def _exchange(new: Path, path: Path) -> None:
     old = path.with_name(f".{path.name}.old")
     shutil.rmtree(old, ignore_errors=True)
     path.rename(old)
-    new.rename(path)
+    try:
+        new.rename(path)
+    except OSError:
+        old.rename(path)
+        raise
     shutil.rmtree(old)
 
 

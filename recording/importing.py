@@ -51,6 +51,9 @@ class Calibration:
 
     def camera(self, width: int, height: int) -> Camera:
         """The camera, in the recording's pixel convention; its own axes are the world's."""
+        for name, side in (("cx", width), ("cy", height)):
+            if not -0.5 * side <= getattr(self, name) <= 1.5 * side:
+                raise InputError(f"{name}: expected about {side / 2:g} for {side} pixels, got {getattr(self, name):g}")
         shift = PIXEL_CENTRE - self.pixel_centre
         return Camera(
             width=width,
@@ -97,6 +100,10 @@ def import_images(
 def depth_image(path: Path, *, scale: float) -> Float32[np.ndarray, "row column"]:
     """The depth in an image of integers, metres; NaN where it holds 0."""
     numbers = _numbers(path)
+    if numbers.itemsize < 2:
+        raise InputError(
+            f"{path}: expected 16-bit depth, got 8-bit numbers: is it a picture of depth, not depth itself?"
+        )
     return np.where(numbers > 0, numbers * np.float32(scale), np.float32(np.nan)).astype(np.float32)
 
 

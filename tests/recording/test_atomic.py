@@ -69,8 +69,16 @@ def test_an_interrupt_leaves_nothing_either(tmp_path: Path) -> None:
 @pytest.mark.parametrize("whole", [whole_file, whole_folder])
 def test_an_existing_result_is_refused_before_any_work(tmp_path: Path, whole) -> None:
     (tmp_path / "result").mkdir()
+    (tmp_path / "result" / "old").touch()
     with pytest.raises(InputError, match=r"result exists already.*--overwrite"), whole(tmp_path / "result"):
         pytest.fail("the block must not run")
+
+
+def test_an_empty_folder_is_nothing_to_lose(tmp_path: Path) -> None:
+    (tmp_path / "result").mkdir()
+    with whole_folder(tmp_path / "result") as partial:
+        (partial / "new").touch()
+    assert [path.name for path in tmp_path.rglob("*")] == ["result", "new"]
 
 
 def test_overwriting_replaces_a_file(tmp_path: Path) -> None:

@@ -188,3 +188,15 @@ def test_an_existing_recording_is_kept(source: Path, tmp_path: Path) -> None:
     assert (tmp_path / "rec" / "recording.json").read_bytes() == before
     import_images(source, tmp_path / "rec", calibration=CALIBRATION, pattern="depth_1.png", overwrite=True)
     assert load_recording(tmp_path / "rec").metadata.frames == 1
+
+
+def test_eight_bit_pictures_of_depth_are_refused(source: Path, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"mask_1\.png: expected 16-bit depth, got 8-bit"):
+        import_images(source, tmp_path / "rec", calibration=CALIBRATION, pattern="mask_*.png")
+    assert not (tmp_path / "rec").exists()
+
+
+def test_a_principal_point_far_outside_the_picture_is_refused(source: Path, tmp_path: Path) -> None:
+    wide = Calibration(fx=300.0, fy=310.0, cx=2560.0, cy=2.0, fps=15.0)
+    with pytest.raises(InputError, match="cx: expected about 3 for 6 pixels, got 2560"):
+        import_images(source, tmp_path / "rec", calibration=wide, pattern="depth_*.png")
