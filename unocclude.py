@@ -310,8 +310,9 @@ def draw_command(recording: Path, motions: Path | None = None, *, output: Output
         motions: The Parquet file; `motions.parquet` in the recording's folder by default.
         output: The picture, PNG or SVG by its ending.
     """
-    answer = load_motions(motions or recording / "motions.parquet")
-    draw_overview(load_recording(recording), answer, output, overwrite=common.overwrite)
+    truth, answer = load_recording(recording), load_motions(motions or recording / "motions.parquet")
+    check_belongs(truth, answer)
+    draw_overview(truth, answer, output, overwrite=common.overwrite)
     common.say(f"drawn {output}")
 
 

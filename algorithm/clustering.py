@@ -35,7 +35,8 @@ def cut_while_cheap(affinity: sparse.csr_array, *, cut_below: float, smallest: i
         members = waiting.pop()
         halves = _cheapest_cut(affinity[members][:, members], smallest) if len(members) >= 2 * smallest else None
         if halves is not None and halves[0] < cut_below:
-            waiting += [members[halves[1]], members[~halves[1]]]
+            for half in (members[halves[1]], members[~halves[1]]):
+                waiting += [half[part] for part in _components(affinity[half][:, half])]
         else:
             label[members] = found
             found += 1
@@ -73,12 +74,16 @@ def without_small(label: Labels, *, smallest: float) -> Labels:
 
 
 def followers(
-    trajectories: Trajectories, sample: Bool[np.ndarray, "trajectory"], label: Int[np.ndarray, "sampled"]
+    trajectories: Trajectories,
+    sample: Bool[np.ndarray, "trajectory"],
+    label: Int[np.ndarray, "sampled"],
+    *,
+    radius_m: float,
 ) -> Labels:
     """The labels of all trajectories, when only a sample was clustered (epsilon 5).
 
     A trajectory out of the sample takes the label of its nearest sampled neighbour in its middle frame;
-    -1 where that frame has none.
+    -1 where that frame has none within `radius_m`.
     """
     everyone = np.full(trajectories.count, -1)
     everyone[sample] = label
@@ -89,8 +94,10 @@ def followers(
         known = sampled_rows[trajectories.frame[sampled_rows] == frame]
         asking = left[trajectories.frame[row[left]] == frame]
         if len(known):
-            nearest = cKDTree(trajectories.position[known]).query(trajectories.position[row[asking]])[1]
-            everyone[asking] = everyone[trajectories.trajectory[known[nearest]]]
+            tree = cKDTree(trajectories.position[known])
+            distance, nearest = tree.query(trajectories.position[row[asking]], distance_upper_bound=radius_m)
+            near = np.isfinite(distance)
+            everyone[asking[near]] = everyone[trajectories.trajectory[known[nearest[near]]]]
     return everyone
 
 

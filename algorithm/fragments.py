@@ -36,15 +36,15 @@ def absorbed(
 
     Segment f is a fragment of body b if, over the frames that both have (at least half of f's, and three),
     f has at most `fragment_share` of b's points, their gap is below `fragment_gap_m` in the median, and
-    f drifts from b by less than `fragment_drift_m_per_s`. The smallest go first, each to its nearest body.
+    f drifts from b by less than `fragment_drift_m_per_s`. Each goes to its nearest body.
     """
     count = int(segment.max(initial=-1)) + 1
     if count < 2 or settings.fragment_share == 0:
         return segment
     meetings = _meetings(trajectories, segment, count)
     body = np.arange(count)
-    for fragment in np.argsort(np.nansum(meetings.size, axis=1), kind="stable"):
-        gaps = {other: _gap(meetings, int(fragment), other, settings, fps) for other in range(count)}
+    for fragment in range(count):
+        gaps = {other: _gap(meetings, fragment, other, settings, fps) for other in range(count)}
         nearest = min(gaps, key=lambda other: gaps[other])
         if gaps[nearest] < settings.fragment_gap_m:
             body[fragment] = nearest
@@ -65,12 +65,13 @@ def _gap(meetings: _Meetings, fragment: int, body: int, settings: Settings, fps:
     size, body_size = meetings.size[fragment], meetings.size[body]
     if frames < max(3, np.isfinite(size).sum() / 2):
         return np.inf
-    if size[common].sum() > settings.fragment_share * body_size[common].sum():
+    if fragment == body or size[common].sum() > settings.fragment_share * body_size[common].sum():
         return np.inf
     apart = (meetings.centre[fragment] - meetings.centre[body])[common]
     third = max(1, frames // 3)
     drift_m = float(np.linalg.norm(apart[-third:].mean(axis=0) - apart[:third].mean(axis=0)))
-    if drift_m > settings.fragment_drift_m_per_s * (frames - third) / fps:
+    moment = np.flatnonzero(common)
+    if drift_m > settings.fragment_drift_m_per_s * (moment[-third:].mean() - moment[:third].mean()) / fps:
         return np.inf
     return float(np.median(meetings.gap[pair][common]))
 

@@ -82,7 +82,8 @@ def linked(
     Curve b may follow a if a ends before b begins, at most `longest_frames` apart, and a polynomial
     through the last and the first `ends_frames` of their trusted parts, `ends`, has an error below
     epsilon 6. A curve may also stay alone at either end, for people enter and leave; that costs the more
-    the greater its `weight` (0 to 1) is, so that a body is not left alone for the sake of a scrap.
+    the greater its `weight` (0 to 1) is, and a link costs the more the less equal the weights are, so that
+    a body is neither left alone for the sake of a scrap nor linked to one.
     """
     candidates: dict[tuple[int, int], Polynomial] = {}
     for i, before in enumerate(curves):
@@ -91,8 +92,7 @@ def linked(
                 found = smoothest_polynomial(*_ends(ends[i], ends[j], ends_frames), eps6_m=eps6_m)
                 if found is not None:
                     candidates[i, j] = found
-    alone = eps6_m * np.exp(HIGHEST_DEGREE) * weight
-    return {pair: candidates[pair] for pair in _assigned(candidates, alone)}
+    return {pair: candidates[pair] for pair in _assigned(candidates, weight, eps6_m)}
 
 
 def seen_areas(
@@ -110,17 +110,23 @@ def seen_areas(
 
 
 def _assigned(
-    candidates: Mapping[tuple[int, int], Polynomial], alone: Float[np.ndarray, "curve"]
+    candidates: Mapping[tuple[int, int], Polynomial], weight: Float[np.ndarray, "curve"], eps6_m: float
 ) -> list[tuple[int, int]]:
-    """The links of least total cost, when curve i stays alone at either end for `alone[i]`."""
+    """The links of least total cost.
+
+    A link costs its polynomial times the root of the ratio of the weights; at either end a curve of weight
+    w stays alone for w^1.5 times the dearest polynomial. (The exponents are from development seeds.)
+    """
+    alone = eps6_m * np.exp(HIGHEST_DEGREE) * weight**1.5
     count = len(alone)
     never = 4.0 * (alone.sum() + sum(found.cost for found in candidates.values()) + 1.0)
     cost = np.full((2 * count, 2 * count), never)
     cost[:count, count:][np.diag_indices(count)] = alone
     cost[count:, :count][np.diag_indices(count)] = alone
     cost[count:, count:] = 0.0
-    for pair, polynomial in candidates.items():
-        cost[pair] = polynomial.cost
+    for (before, after), polynomial in candidates.items():
+        low, high = sorted((weight[before], weight[after]))
+        cost[before, after] = polynomial.cost * np.sqrt(high / max(low, 1e-12))
     rows, columns = linear_sum_assignment(cost)
     return [(int(i), int(j)) for i, j in zip(rows, columns, strict=True) if (i, j) in candidates]
 

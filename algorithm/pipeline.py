@@ -113,7 +113,7 @@ def segmented(trajectories: Trajectories, settings: Settings, spacing_m: float, 
         else:
             label = clustering.cut_while_cheap(matrix, cut_below=settings.cut_below, smallest=math.ceil(settings.eps4))
         label = clustering.without_small(label, smallest=settings.eps4)
-        return clustering.followers(trajectories, sample, label)
+        return clustering.followers(trajectories, sample, label, radius_m=settings.neighbour_radius_m)
 
 
 def completed_motions(

@@ -87,5 +87,8 @@ def _mean_by(group: np.ndarray, value: np.ndarray, groups: int) -> np.ndarray:
 def _smoothed_difference(difference: np.ndarray, count: np.ndarray, sigma: float) -> np.ndarray:
     weight = np.clip(2.0 * count / count.max() - 1.0, 0.0, 1.0) ** 2
     known = np.where(np.isfinite(difference), difference, 0.0) * weight[:, None]
-    smooth = gaussian_filter1d(known, sigma, axis=0, mode="constant")
-    return smooth / np.maximum(gaussian_filter1d(weight, sigma, mode="constant"), 1e-12)[:, None]
+    total = gaussian_filter1d(weight, sigma, mode="constant")
+    smooth = gaussian_filter1d(known, sigma, axis=0, mode="constant") / np.maximum(total, 1e-12)[:, None]
+    moment = np.arange(len(count))
+    near = np.flatnonzero(total > 1e-3)  # Far from every well seen frame, what was known last goes on.
+    return np.stack([np.interp(moment, near, smooth[near, axis]) for axis in range(3)], axis=1)

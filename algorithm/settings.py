@@ -25,7 +25,7 @@ class Settings(Frozen):
     """The settings of `solve`. Lengths in point spacings refer to the recording's mean point spacing."""
 
     preset: Preset = "default"
-    """The set of values that the others started from."""
+    """The name of the set of values that these started from; it is chosen by `--preset`, not set."""
 
     remove_static: bool = True
     """Leave out what stands still before the flow; else only eps2 does."""
@@ -66,7 +66,7 @@ class Settings(Frozen):
     most_segments: Count = 60
     """Segments that `eigengap` may find in one connected component."""
     eps4: Annotated[float, Field(ge=0)] = 20.0
-    """Trajectories: a smaller segment is noise (paper: epsilon 4)."""
+    """Trajectories, of those that are clustered: a smaller segment is noise (paper: epsilon 4)."""
 
     fragment_share: Share = 0.25
     """A segment with at most this share of a near one's points is a limb of it; 0 = none is (paper)."""
@@ -135,6 +135,8 @@ def preset_settings(name: str, *, of_scene: Mapping[str, float] | None = None) -
 
 def changed_settings(settings: Settings, changes: Mapping[str, Any], *, source: str) -> Settings:
     """The settings with some of them replaced; `source` says in an error where the changes came from."""
+    if changes.get("preset", settings.preset) != settings.preset:
+        raise InputError(f"{source}: a preset is many settings, not one: choose it with --preset")
     return validated(Settings, settings.model_dump() | dict(changes), source=source)
 
 

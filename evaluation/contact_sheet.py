@@ -27,7 +27,7 @@ def draw_contact_sheet(recording: Recording, path: Path, *, overwrite: bool = Fa
     count = recording.metadata.frames
     moments = np.unique(np.linspace(0, count - 1, _FRAMES_SHOWN).round().astype(int))
     frames = [recording.frames[int(moment)] for moment in moments]
-    kinds = [kind for kind in (_depth, _objects, _reasons) if kind(frames[0]) is not None]
+    kinds = [kind for kind in (_depth, _objects, _reasons) if any(kind(frame) is not None for frame in frames)]
     limits = {_depth: depth_range([frame.depth for frame in frames]), _objects: (0, 9), _reasons: (0, len(REASONS))}
     shape = recording.metadata.height / recording.metadata.width
     with mpl.rc_context({"font.size": 8}):
@@ -37,6 +37,7 @@ def draw_contact_sheet(recording: Recording, path: Path, *, overwrite: bool = Fa
             for panel, frame, moment in zip(row, frames, moments, strict=True):
                 low, high = limits[kind]
                 image = kind(frame)
+                image = np.full(frame.depth.shape, np.nan) if image is None else image
                 colours = "viridis_r" if kind is _depth else mpl.colors.ListedColormap(("#FFFFFF", *COLOURS, "#999999"))
                 panel.imshow(image, cmap=colours, vmin=low, vmax=high, interpolation="nearest")
                 _named(panel, kind.__name__.removeprefix("_"), int(moment), recording.fps)

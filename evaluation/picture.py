@@ -114,7 +114,7 @@ def _draw_curve(axes: Axes, place: np.ndarray, curve: Representative) -> None:
 
 
 def _dots(axes: Axes, place: np.ndarray, colours: np.ndarray, *, size: float, alpha: float) -> None:
-    step = max(1, len(place) // _DOTS)
+    step = -(-len(place) // _DOTS) or 1
     axes.scatter(place[::step, 0], place[::step, 1], s=size, c=colours[::step], alpha=alpha, linewidths=0)
 
 

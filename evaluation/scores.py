@@ -26,6 +26,7 @@ from evaluation.completion import (
     point_errors,
 )
 from evaluation.identity import assa, fragmentations, hota, id_switches, idf1, places_of, tracks_of
+from evaluation.ignored import counted
 from evaluation.links import link_precision, link_recall
 from evaluation.observations import Observations, observations_of, require_fitting
 from evaluation.segmentation import (
@@ -56,6 +57,7 @@ class Evidence:
 
     recording: Recording
     motions: Motions
+    """Without what is ignored (`evaluation.ignored`)."""
     visibility: Visibility
     observations: Observations
     motion_of: dict[int, tuple[int, float]]
@@ -99,7 +101,7 @@ def scores(recording: Recording, motions: Motions, visibility: Visibility | None
         "identity": _identity(evidence),
         "completion": _completion(evidence),
         "links": {
-            "precision": _if_known(evidence, link_precision(motions, evidence.observations)),
+            "precision": _if_known(evidence, link_precision(evidence.motions, evidence.observations)),
             "recall": link_recall(evidence.observations, evidence.visibility),
         },
         "seconds": {stage: motions.making.seconds.get(stage) for stage in STAGES},
@@ -111,6 +113,7 @@ def scores(recording: Recording, motions: Motions, visibility: Visibility | None
 def evidence_of(recording: Recording, motions: Motions, visibility: Visibility | None = None) -> Evidence:
     """What the scores are made of; InputError where a row lies outside the recording's frames or picture."""
     require_fitting(recording, motions)
+    motions = counted(recording, motions)
     visibility = visibility or visibility_of(recording)
     observations = observations_of(recording, motions, visibility)
     return Evidence(

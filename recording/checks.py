@@ -79,11 +79,19 @@ def _reason(error: OSError) -> str:
 def _sentence(model: type[BaseModel], error: ErrorDetails) -> str:
     """What was wrong, in one sentence that begins with the key."""
     location = error["loc"]
-    key = ".".join(str(part) for part in location) or "the document"
+    nested, written = _found(model, location[:-1] if error["type"] == "extra_forbidden" else location)
+    key = written or "the document"
     if error["type"] == "extra_forbidden":
-        return f"unknown key {key!r}, {nearest_name(str(location[-1]), _known_keys(model, location[:-1]))}"
+        unknown = f"{written}.{location[-1]}".removeprefix(".")
+        return f"unknown key {unknown!r}, {nearest_name(str(location[-1]), nested.model_fields)}"
     if error["type"] == "missing":
         return f"key {key!r} is missing"
+    if error["type"] == "union_tag_not_found":
+        return f"key '{key}.{error['ctx']['discriminator'].strip(chr(39))}' is missing"
+    if error["type"] == "union_tag_invalid":
+        tag = error["ctx"]
+        name = tag["discriminator"].strip("'")
+        return f"{key}.{name}: input should be {tag['expected_tags'].replace(', ', ' or ')}, got {tag['tag']!r}"
     message = error["msg"].removeprefix("Value error, ")
     sentence = f"{key}: {message[0].lower()}{message[1:]}"
     if not location and isinstance(error["input"], dict):
@@ -96,17 +104,28 @@ def _shortened(value: object) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-def _known_keys(model: type[BaseModel], location: tuple[int | str, ...]) -> list[str]:
-    """The keys that the model, or the model nested in it at the location, knows."""
+def _found(model: type[BaseModel], location: tuple[int | str, ...]) -> tuple[type[BaseModel], str]:
+    """The model that is nested in this one at the location, and the key as the user wrote it.
+
+    Pydantic's location names the kind of a value that can be of several; the user's key does not.
+    """
+    models, key = [model], []
     for part in location:
-        field = model.model_fields.get(str(part))
-        nested = _nested_model(field.annotation) if field is not None else None
-        model = nested or model
-    return list(model.model_fields)
+        chosen = [choice for choice in models if len(models) > 1 and _is_of_kind(choice, part)]
+        field = models[0].model_fields.get(str(part))
+        if not chosen:
+            key.append(str(part))
+        models = chosen or (_nested_models(field.annotation) if field is not None else []) or models
+    return models[0], ".".join(key)
 
 
-def _nested_model(annotation: object) -> type[BaseModel] | None:
-    """The model inside an annotation such as `tuple[Person, ...]` or `Camera | None`."""
+def _is_of_kind(model: type[BaseModel], tag: int | str) -> bool:
+    """Whether one of the model's keys can have no other value than the tag."""
+    return any(get_args(field.annotation) == (tag,) for field in model.model_fields.values())
+
+
+def _nested_models(annotation: object) -> list[type[BaseModel]]:
+    """The models inside an annotation such as `tuple[Person, ...]` or `Camera | None`."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return annotation
-    return next((found for part in get_args(annotation) if (found := _nested_model(part))), None)
+        return [annotation]
+    return [model for part in get_args(annotation) for model in _nested_models(part)]

@@ -1,5 +1,6 @@
 """Frames as OpenEXR files: one single-part image, plain channels, attributes that explain it alone."""
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -81,6 +82,8 @@ def read_xray(path: Path, *, shape: tuple[int, int]) -> CutoutXRay:
     for header, channels in _parts(path):
         column, row = (int(place) for place in header["dataWindow"][0])
         for name, pixels in channels.items():
+            if not re.fullmatch(r"xray_\d+", name):
+                raise InputError(f"{path}: expected channels 'xray_' and an object's id, got {name!r}")
             last_row, last_column = row + pixels.shape[0], column + pixels.shape[1]
             if min(row, column) < 0 or last_row > shape[0] or last_column > shape[1]:
                 came = f"{name!r} in rows {row} to {last_row - 1} and columns {column} to {last_column - 1}"

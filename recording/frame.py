@@ -44,5 +44,5 @@ class Frame:
         return np.isfinite(self.depth)
 
 
-REASONS = {0: "return", 1: "nothing there"}
+REASONS = {0: "return", 1: "nothing there", 2: "out of range"}
 """What the numbers of `Frame.reason` mean."""

@@ -8,9 +8,6 @@ from pydantic import Field, PositiveInt, field_validator, model_validator
 from recording.camera import PIXEL_CENTRE, Camera
 from recording.checks import Frozen
 
-FORMAT_NAME = "unocclude-recording"
-FORMAT_VERSION = 1
-
 Positive = Annotated[float, Field(gt=0)]
 Row = tuple[float, float, float, float]
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from recording.camera import Camera
+from recording.errors import InputError
 from recording.exr import stored_depth
 from recording.frame import Frame
 from recording.metadata import Metadata
@@ -25,6 +26,9 @@ class Recording:
     camera: Camera = field(init=False)
 
     def __post_init__(self) -> None:
+        for name, values in (("frames", self.frames), ("X-rays", self.xray)):
+            if values is not None and len(values) != self.metadata.frames:
+                raise InputError(f"expected {self.metadata.frames} {name}, as the metadata says, got {len(values)}")
         object.__setattr__(self, "camera", self.metadata.as_camera())
 
     @property

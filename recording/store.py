@@ -87,11 +87,10 @@ def load_recording(folder: str | os.PathLike[str]) -> Recording:
         raise InputError(f"{place}: expected a recording, but it holds no recording.json")
     metadata = validated(Metadata, json_document(description), source=str(description))
     camera = metadata.as_camera()
-    missing = [number for number in range(metadata.frames) if not _frame_path(place, number).is_file()]
-    if missing:
-        raise InputError(
-            f"{_frame_path(place, missing[0])} is missing: recording.json promises {metadata.frames} frames"
-        )
+    numbers = (_frame_path(place, number) for number in range(metadata.frames))
+    missing = next((path for path in numbers if not path.is_file()), None)
+    if missing is not None:
+        raise InputError(f"{missing} is missing: recording.json promises {metadata.frames} frames")
     return Recording(
         metadata=metadata,
         frames=_StoredFrames(place, metadata.frames, camera),
@@ -160,10 +159,10 @@ class _StoredTruth(Mapping[int, MeshSequence]):
         self._path = path
         try:
             with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
-                names = arrays.files
+                names = [name.removeprefix("faces_") for name in arrays.files if name.startswith("faces_")]
+                self._ids = sorted(map(int, names))
         except (OSError, ValueError, EOFError, TypeError, zipfile.BadZipFile):  # TypeError: a bare array.
             raise InputError(f"{path}: expected a NumPy .npz archive: make the recording again") from None
-        self._ids = sorted(int(name.removeprefix("faces_")) for name in names if name.startswith("faces_"))
         self._mesh = lru_cache(maxsize=None)(self._read)
 
     def __getitem__(self, objectid: int) -> MeshSequence:

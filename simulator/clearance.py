@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from itertools import combinations, product
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from simulator.things import Obstacle
 
@@ -39,6 +39,21 @@ def smallest_clearance(centres: Sequence[Float[np.ndarray, "frame 2"]], obstacle
         people_m=float(min(between, default=np.inf)),
         obstacles_m=float(min(beside, default=np.inf)),
     )
+
+
+def crowded(
+    centres: Sequence[Float[np.ndarray, "frame 2"]],
+    obstacles: Sequence[Obstacle],
+    *,
+    people_m: float,
+    obstacles_m: float,
+) -> Bool[np.ndarray, "person"]:
+    """Mark who in some frame is nearer than `people_m` to another's centre or than `obstacles_m` to an obstacle."""
+    marked = np.array([smallest_clearance([one], obstacles).obstacles_m < obstacles_m for one in centres])
+    for a, b in combinations(range(len(centres)), 2):
+        if np.linalg.norm(centres[a] - centres[b], axis=-1).min() < people_m:
+            marked[[a, b]] = True
+    return marked
 
 
 def _outline_distance(obstacle: Obstacle, points: Float[np.ndarray, "point 2"]) -> Float[np.ndarray, "point"]:

@@ -18,6 +18,8 @@ _SECTIONS = 40
 _SLEEVE_SECTIONS = 16
 _BAND_M = 0.03
 """A ring's outline is that of the body so far above and below it."""
+_NECK_M = 0.065
+"""Radius of a neck, which the shoulders' slope ends at."""
 _WITH_THIGHS = 0.75
 """How much of the thighs' motion the hem takes."""
 _ROUNDNESS = 2.5
@@ -59,7 +61,10 @@ def _outline(body: Body, heights: Float[np.ndarray, "ring"], loose: float) -> Fl
         band = torso[np.abs(torso[:, 2] - height) < _BAND_M]
         back, front = float(band[:, 0].min()), float(band[:, 0].max())
         rings.append(((back + front) / 2, (front - back) / 2 + loose, float(np.abs(band[:, 1]).max()) + loose))
-    return gaussian_filter1d(np.array(rings), 1.0, axis=0, mode="nearest")
+    outline = gaussian_filter1d(np.array(rings), 1.0, axis=0, mode="nearest")
+    shoulder, neck = float(body.joint("upper_arm.L")[2]) + 0.02, body.joint("neck")
+    rise = np.clip((heights - shoulder) / (neck[2] - shoulder), 0.0, 1.0)[:, None] ** 1.5
+    return outline + rise * (np.array([neck[0], _NECK_M + loose, _NECK_M + loose]) - outline)
 
 
 def _torso_weights(

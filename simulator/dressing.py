@@ -22,7 +22,7 @@ _GRIP_M = 0.07
 """From the wrist to the middle of the fist."""
 _UMBRELLA_ARM = {"upper_arm": (-0.35, 0.45), "forearm": (-2.1, 0.0)}
 """Forward (negative) and inward, radians: the upper arm a little forward, the forearm up."""
-_HEADROOM_M = 0.08
+_HEADROOM_M = 0.1
 """Between the top of the head and the rim's height."""
 _CASE_ARM_STRAIGHT = 0.2
 """By how much the forearm is turned back from its ease at rest, radians."""
@@ -72,8 +72,8 @@ def _skin(body: Body, prop: Prop) -> Skin:
     if isinstance(prop, Coat):
         return coat_skin(body, prop)
     arm = _arm(body, prop)
-    solid = _umbrella(body, prop, arm.grip) if isinstance(prop, Umbrella) else _suitcase(prop, arm.grip)
-    return _in_hand(body, arm, solid)
+    solids = _umbrella(body, prop, arm.grip) if isinstance(prop, Umbrella) else _suitcase(prop, arm.grip)
+    return joined([_in_hand(body, arm, solid) for solid in solids])
 
 
 def _arm(body: Body, prop: Umbrella | Suitcase) -> _Arm:
@@ -90,7 +90,9 @@ def _arm(body: Body, prop: Umbrella | Suitcase) -> _Arm:
     hand_turn = turns["upper_arm"] @ turns["forearm"]
     fist = wrist + _GRIP_M * (wrist - elbow) / np.linalg.norm(wrist - elbow)
     grip = shoulder + turns["upper_arm"] @ (elbow - shoulder) + hand_turn @ (fist - elbow)
-    return _Arm(side=side, turns={f"{bone}.{side}": turn for bone, turn in turns.items()}, hand_turn=hand_turn, grip=grip)
+    return _Arm(
+        side=side, turns={f"{bone}.{side}": turn for bone, turn in turns.items()}, hand_turn=hand_turn, grip=grip
+    )
 
 
 def _case_angle(body: Body, case: Suitcase, side: str) -> float:
@@ -118,19 +120,18 @@ def _in_hand(body: Body, arm: _Arm, solid: trimesh.Trimesh) -> Skin:
     )
 
 
-def _umbrella(body: Body, prop: Umbrella, grip: Float[np.ndarray, "3"]) -> trimesh.Trimesh:
+def _umbrella(body: Body, prop: Umbrella, grip: Float[np.ndarray, "3"]) -> list[trimesh.Trimesh]:
     """The umbrella on its shaft through the fist, tilted so that it covers the head."""
     head = body.joint("head")
     top = np.array([0.0, 0.0, body.height + _HEADROOM_M + prop.depth])
-    top[:2] = head[:2] + 0.35 * (grip - head)[:2]
+    top[:2] = head[:2] + 0.6 * (grip - head)[:2]
     shaft = (top - grip) / np.linalg.norm(top - grip)
     tilt, _ = Rotation.align_vectors(shaft[None], np.array([[0.0, 0.0, 1.0]]))
     canopy = _canopy(prop)
-    canopy.apply_transform(trimesh.transformations.compose_matrix(translate=-np.array([0.0, 0.0, prop.depth])))
-    canopy.vertices = tilt.apply(canopy.vertices) + top
+    canopy.vertices = tilt.apply(canopy.vertices - np.array([0.0, 0.0, prop.depth])) + top
     below, above = grip - 0.1 * shaft, top + 0.05 * shaft
     stick = trimesh.creation.cylinder(radius=_SHAFT_RADIUS_M, segment=np.stack([below, above]), sections=8)
-    return trimesh.util.concatenate([canopy, stick])
+    return [canopy, stick]
 
 
 def _canopy(prop: Umbrella) -> trimesh.Trimesh:
@@ -147,15 +148,15 @@ def _canopy(prop: Umbrella) -> trimesh.Trimesh:
     return trimesh.Trimesh(vertices, np.concatenate([fan, 1 + tube_faces(len(share), sections)]), process=False)
 
 
-def _suitcase(prop: Suitcase, grip: Float[np.ndarray, "3"]) -> trimesh.Trimesh:
+def _suitcase(prop: Suitcase, grip: Float[np.ndarray, "3"]) -> list[trimesh.Trimesh]:
     """The case below its handle, upright."""
     along, across, up = prop.size
     case = trimesh.creation.box(extents=(along, across, up))
-    case.apply_translation(grip - [0.0, 0.0, _CASE_HANDLE_M + up / 2])
+    case.apply_translation(grip - np.array([0.0, 0.0, _CASE_HANDLE_M + up / 2]))
     thick, half = 0.02, min(0.07, 0.4 * along)
     bar = trimesh.creation.box(extents=(2 * half, thick, thick))
     bar.apply_translation(grip)
     posts = [trimesh.creation.box(extents=(thick, thick, _CASE_HANDLE_M)) for _ in range(2)]
     for post, way in zip(posts, (-half, half), strict=True):
-        post.apply_translation(grip + [way, 0.0, -_CASE_HANDLE_M / 2])
-    return trimesh.util.concatenate([case, bar, *posts])
+        post.apply_translation(grip + np.array([way, 0.0, -_CASE_HANDLE_M / 2]))
+    return [case, bar, *posts]

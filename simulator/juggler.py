@@ -1,6 +1,6 @@
 """Somebody who juggles: a body that stands, and arms that bring the hands to the balls."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
@@ -12,8 +12,10 @@ from simulator.juggling_scene import Juggler
 from simulator.limb import Directions, Rotations, across, middle_joint, turns
 from simulator.siteswap import Juggling
 
-_HAND_HEIGHT, _REACH, _THROW_WIDTH, _CATCH_WIDTH = 0.68, 0.19, 0.12, 0.32
-"""What a juggler does who is not told otherwise, in statures."""
+_BELOW_SHOULDER, _REACH, _THROW_WIDTH, _CATCH_WIDTH = 0.25, 0.6, 0.4, 1.05
+"""Where hands throw and catch if nothing else is said, in lengths of the arm to the wrist."""
+_STRETCHED = 0.98
+"""Of the arm's length: hands that nobody tells otherwise stay as near to the shoulders."""
 _PALM_AT = np.array([0.02, 0.0, -0.085])
 """From the wrist to the middle of the palm of a hand that hangs down, metres."""
 _OUT_OF_PALM = np.array([-0.1, 1.0, -0.15])
@@ -59,23 +61,37 @@ def juggling_act(juggler: Juggler, times: Float[np.ndarray, "frame"]) -> Act:
 
 def juggling_of(juggler: Juggler, body: Body) -> Juggling:
     """The juggler's pattern in time and space, in the body's axes."""
-    height, reach, throw, catch = (
-        share * body.height if given is None else given
-        for given, share in (
-            (juggler.hand_height, _HAND_HEIGHT),
-            (juggler.reach, _REACH),
-            (juggler.throw_width, _THROW_WIDTH),
-            (juggler.catch_width, _CATCH_WIDTH),
-        )
-    )
-    return Juggling(
+    arm = sum(_arm_lengths(body, "L"))
+    reach = juggler.reach or _REACH * arm
+    throw = juggler.throw_width or _THROW_WIDTH * arm
+    catch = juggler.catch_width or _CATCH_WIDTH * arm
+    level = Juggling(
         pattern=juggler.siteswap,
         beat_s=juggler.beat_s,
         dwell_s=juggler.dwell_s,
         phase=juggler.phase,
-        throw_spots=np.array([[reach, throw / 2, height], [reach, -throw / 2, height]]),
-        catch_spots=np.array([[reach, catch / 2, height], [reach, -catch / 2, height]]),
+        throw_spots=np.array([[reach, throw / 2, 0.0], [reach, -throw / 2, 0.0]]),
+        catch_spots=np.array([[reach, catch / 2, 0.0], [reach, -catch / 2, 0.0]]),
     )
+    height = np.array([0.0, 0.0, juggler.hand_height or _easy_height(level, body, juggler.ball_radius)])
+    return replace(level, throw_spots=level.throw_spots + height, catch_spots=level.catch_spots + height)
+
+
+def _easy_height(level: Juggling, body: Body, radius: float) -> float:
+    """How high the spots of a pattern at height 0 are to be lifted, metres.
+
+    That is a little below the shoulders, or higher where the arms would not reach the bottom of a scoop else.
+    """
+    cycle = np.linspace(0.0, 2 * len(level.pattern) * level.beat_s, 200 * len(level.pattern))
+    heights = []
+    for side, balls in zip(SIDES, level.hand_places(cycle), strict=True):
+        arm = sum(_arm_lengths(body, side))
+        shoulder = body.joint(f"upper_arm.{side}")
+        wrist = _wrists(body, side, balls, radius)
+        aside = np.linalg.norm(wrist[:, :2] - shoulder[:2], axis=1)
+        below = np.sqrt(np.maximum((_STRETCHED * arm) ** 2 - aside**2, 0.0))
+        heights += [shoulder[2] - _BELOW_SHOULDER * arm, float((shoulder[2] - below - wrist[:, 2]).max())]
+    return float(max(heights))
 
 
 def ball_in_hand(body: Body, side: str, radius: float) -> Float[np.ndarray, "3"]:
@@ -87,7 +103,9 @@ def ball_in_hand(body: Body, side: str, radius: float) -> Float[np.ndarray, "3"]
     weight = body.weights[:, body.bones.index(f"hand.{side}")]
     faces = body.faces[(weight[body.faces] > 0.5).all(axis=1)]
     corners = body.vertices[faces].astype(np.float64) - body.joint(f"hand.{side}")
-    skin = np.concatenate([corners.reshape(-1, 3), corners.mean(axis=1), (corners + np.roll(corners, 1, 1)).reshape(-1, 3) / 2])
+    skin = np.concatenate(
+        [corners.reshape(-1, 3), corners.mean(axis=1), (corners + np.roll(corners, 1, 1)).reshape(-1, 3) / 2]
+    )
     outward = mirror * _OUT_OF_PALM / np.linalg.norm(_OUT_OF_PALM)
     ways = np.arange(0.0, 0.3, 0.0005)[:, None]
     centres = mirror * _PALM_AT + ways * outward
@@ -100,11 +118,10 @@ def _arm(body: Body, side: str, balls: Directions, radius: float) -> dict[str, R
     mirror = _mirror(side)
     moments = len(balls)
     up = np.repeat([[0.0, 0.0, 1.0]], moments, axis=0)
-    ahead = np.repeat([[np.cos(_TURNED_IN), mirror[1] * np.sin(_TURNED_IN), 0.0]], moments, axis=0)
-    hand = turns((mirror * _OUT_OF_PALM, mirror * _FINGERS), (up, ahead))
-    wrist = balls - hand @ ball_in_hand(body, side, radius)
+    hand = np.repeat(_palm_up(side)[None], moments, axis=0)
+    wrist = _wrists(body, side, balls, radius)
     rest = {bone: body.joint(f"{bone}.{side}") for bone in ("upper_arm", "forearm", "hand")}
-    lengths = _length(rest["forearm"] - rest["upper_arm"]), _length(rest["hand"] - rest["forearm"])
+    lengths = _arm_lengths(body, side)
     shoulder = np.repeat(rest["upper_arm"][None], moments, axis=0)
     pole = np.repeat([_ELBOW * [1.0, -mirror[1], 1.0]], moments, axis=0)
     elbow = middle_joint(shoulder, wrist, lengths, towards=pole)
@@ -121,6 +138,19 @@ def _arm(body: Body, side: str, balls: Directions, radius: float) -> dict[str, R
         f"forearm.{side}": np.swapaxes(upper, 1, 2) @ fore,
         f"hand.{side}": np.swapaxes(fore, 1, 2) @ hand,
     }
+
+
+def _palm_up(side: str) -> Float[np.ndarray, "3 3"]:
+    """The rotation of a hand that hangs down to one whose palm is up and whose fingers point forward and inward."""
+    mirror = _mirror(side)
+    ahead = np.array([[np.cos(_TURNED_IN), mirror[1] * np.sin(_TURNED_IN), 0.0]])
+    up = np.array([[0.0, 0.0, 1.0]])
+    return np.asarray(turns((mirror * _OUT_OF_PALM, mirror * _FINGERS), (up, ahead))[0])
+
+
+def _wrists(body: Body, side: str, balls: Directions, radius: float) -> Directions:
+    """Where the wrist is so that the ball lies in the palm."""
+    return np.asarray(balls - _palm_up(side) @ ball_in_hand(body, side, radius))
 
 
 def _require_reach(elbow: Directions, side: str, farthest: float, length: float) -> None:
@@ -151,5 +181,6 @@ def _about_y(angle: Float[np.ndarray, "moment"]) -> Rotations:
     return np.moveaxis(np.array([[cosine, zero, sine], [zero, one, zero], [-sine, zero, cosine]]), -1, 0)
 
 
-def _length(vector: np.ndarray) -> float:
-    return float(np.linalg.norm(vector))
+def _arm_lengths(body: Body, side: str) -> tuple[float, float]:
+    shoulder, elbow, wrist = (body.joint(f"{bone}.{side}") for bone in ("upper_arm", "forearm", "hand"))
+    return float(np.linalg.norm(elbow - shoulder)), float(np.linalg.norm(wrist - elbow))

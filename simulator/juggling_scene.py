@@ -35,13 +35,14 @@ class Juggler(Frozen):
     ball_radius: Positive = 0.05
     """Metres."""
     hand_height: Positive | None = None
-    """Height of the balls' centres where hands throw and catch, metres; 0.68 of the stature where it is not given."""
+    """Height of the balls' centres where hands throw and catch, metres; if not given, 0.25 arms below the
+    shoulders, or higher where the arms would be too short for the scoop. An arm is the body's, shoulder to wrist."""
     reach: Positive | None = None
-    """How far before the juggler's middle that is, metres; 0.19 of the stature where it is not given."""
+    """How far before the juggler's middle that is, metres; 0.6 arms if not given."""
     throw_width: Positive | None = None
-    """Distance between where the left and the right hand throw, metres; 0.12 of the stature if not given."""
+    """Distance between where the left and the right hand throw, metres; 0.4 arms if not given."""
     catch_width: Positive | None = None
-    """Distance between where the left and the right hand catch, metres; 0.32 of the stature if not given."""
+    """Distance between where the left and the right hand catch, metres; 1.05 arms if not given."""
 
     @field_validator("body")
     @classmethod

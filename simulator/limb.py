@@ -7,9 +7,7 @@ Directions = Float[np.ndarray, "moment 3"]
 Rotations = Float[np.ndarray, "moment 3 3"]
 
 
-def middle_joint(
-    root: Directions, end: Directions, lengths: tuple[float, float], *, towards: Directions
-) -> Directions:
+def middle_joint(root: Directions, end: Directions, lengths: tuple[float, float], *, towards: Directions) -> Directions:
     """Where the elbow or knee of a limb is, metres: as far as may be `towards` a direction from the limb's line.
 
     NaN where the end is out of reach: farther than both bones are long, or nearer than their difference.
@@ -31,7 +29,7 @@ def across(direction: Directions, line: Directions) -> Directions:
 
 
 def turns(rest: tuple[np.ndarray, np.ndarray], goal: tuple[Directions, Directions]) -> Rotations:
-    """The rotations that take the first rest direction to the first goal, the second as near to the second as can be."""
+    """The rotations that take the first rest direction to the first goal, the second as near to its own as can be."""
     return _axes(*goal) @ np.swapaxes(_axes(rest[0][None], rest[1][None]), -1, -2)
 
 

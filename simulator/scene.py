@@ -6,7 +6,7 @@ Lengths are metres, times seconds, speeds metres a second; what is in degrees sa
 
 from importlib.resources import files
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated
 
 import numpy as np
 from pydantic import Field, PositiveInt, model_validator
@@ -14,7 +14,10 @@ from pydantic import Field, PositiveInt, model_validator
 from recording.camera import Camera, looking_at
 from recording.checks import Frozen, nearest_name, toml_document, validated
 from recording.errors import InputError
+from simulator.juggling_scene import Juggler
+from simulator.sensor import Ideal, Sensor
 from simulator.things import Ball, Obstacle, Person, Point, Positive
+from simulator.trajectory_file import with_recorded_walks
 
 NotNegative = Annotated[float, Field(ge=0)]
 
@@ -82,13 +85,6 @@ class PaperSettings(Frozen):
     eps5: float
 
 
-class Sensor(Frozen):
-    """What the scanner makes of the depth."""
-
-    preset: Literal["ideal"] = "ideal"
-    """`ideal`: exact depth wherever the ray meets something."""
-
-
 class Scene(Frozen):
     """A scene, as its TOML file says it."""
 
@@ -102,17 +98,19 @@ class Scene(Frozen):
     """Pictures a second."""
     camera: CameraSpot
     people: tuple[Person, ...] = ()
+    jugglers: tuple[Juggler, ...] = ()
     balls: tuple[Ball, ...] = ()
     obstacles: tuple[Obstacle, ...] = ()
     vary: Vary = Vary()
-    sensor: Sensor = Sensor()
+    sensor: Sensor = Ideal()
     paper: PaperSettings | None = None
 
     @model_validator(mode="after")
     def _something_named_once(self) -> "Scene":
-        things: tuple[Person | Ball | Obstacle, ...] = (*self.people, *self.balls, *self.obstacles)
+        things: tuple[Person | Juggler | Ball | Obstacle, ...]
+        things = (*self.people, *self.jugglers, *self.balls, *self.obstacles)
         if not things:
-            raise ValueError("expected at least one of 'people', 'balls' and 'obstacles'")
+            raise ValueError("expected at least one of 'people', 'jugglers', 'balls' and 'obstacles'")
         names = [thing.name for thing in things if thing.name is not None]
         twice = next((name for name in names if names.count(name) > 1), None)
         if twice is not None:
@@ -134,4 +132,5 @@ def load_scene(name_or_path: str | Path) -> Scene:
         place = Path(text)
     else:
         raise InputError(f"unknown scene {text!r}: {nearest_name(text, scene_names())} (or the path of a .toml file)")
-    return validated(Scene, toml_document(place), source=str(place))
+    document = with_recorded_walks(toml_document(place), place=place)
+    return validated(Scene, document, source=str(place))

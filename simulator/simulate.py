@@ -22,6 +22,7 @@ from simulator.backend import Backend, BackendWish, find_backend
 from simulator.clearance import Clearance, smallest_clearance
 from simulator.pictures import Stage, pictures
 from simulator.scene import Scene, load_scene
+from simulator.sensor import on_another_day
 from simulator.stage import Actor, actors, walkers_centres
 from simulator.variation import varied
 from simulator.workers import written_pictures
@@ -48,9 +49,11 @@ class Simulation:
         """What is to be cast."""
         return Stage(
             camera=self.metadata.as_camera(),
-            moving={actor.record.id: actor.mesh for actor in self.cast if actor.record.moving},
-            still={actor.record.id: actor.mesh for actor in self.cast if not actor.record.moving},
+            moving={a.record.id: a.mesh for a in self.cast if a.record.moving},
+            restless={a.record.id: a.mesh for a in self.cast if a.mesh.moving and not a.record.moving},
+            still={a.record.id: a.mesh for a in self.cast if not (a.mesh.moving or a.record.moving)},
             frames=self.scene.frames,
+            sensor=self.scene.sensor,
         )
 
     def pictures(self, backend: Backend) -> Iterator[tuple[Frame, XRay]]:
@@ -74,7 +77,8 @@ def prepared(
     """
     given = scene if isinstance(scene, Scene) else load_scene(scene)
     pixels = picture_size(size, given) if isinstance(size, str) else size
-    resolved = _changed(varied(given, seed), size=pixels, frames=frames, sensor=sensor)
+    changed = _changed(varied(given, seed), size=pixels, frames=frames, sensor=sensor)
+    resolved = changed.model_copy(update={"sensor": on_another_day(changed.sensor, seed)})
     cast = actors(resolved)
     document = resolved.model_dump(mode="json")
     metadata = metadata_of(
@@ -99,10 +103,11 @@ def simulate(
     seed: int = 0,
     size: str | tuple[int, int] | None = None,
     frames: int | None = None,
+    sensor: str | None = None,
     backend: BackendWish = "auto",
 ) -> Recording:
     """The recording of a scene (a name, a TOML file or a `Scene`), in memory."""
-    simulation = prepared(scene, seed=seed, size=size, frames=frames)
+    simulation = prepared(scene, seed=seed, size=size, frames=frames, sensor=sensor)
     pictures = list(simulation.pictures(find_backend(backend)))
     return Recording(
         metadata=simulation.metadata,

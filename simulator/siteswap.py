@@ -17,7 +17,7 @@ GRAVITY = 9.81
 """Metres a second squared."""
 IN_THE_AIR = -1
 """The hand that holds a ball which none holds."""
-_GENTLENESS = 0.4
+_GENTLENESS = 0.25
 """How a hand reverses: at 1 evenly over the whole stroke, which takes the longest way; at 0 mostly at its ends."""
 
 Place = Float[np.ndarray, "3"]
@@ -85,10 +85,11 @@ class Juggling:
         places = np.full((2, len(times), 3), np.nan)
         last = int(np.floor(clock.max(initial=0.0) / self.beat_s)) + 3
         for beat in range(last):
-            thrown, caught = beat * self.beat_s, (beat + 2) * self.beat_s - self.dwell_s
+            thrown, again = beat * self.beat_s, (beat + 2) * self.beat_s
+            caught = again - self.dwell_s
             leave, meet, throw_again = self._release(beat), self._arrival(beat + 2), self._release(beat + 2)
             empty = (clock >= thrown) & (clock < caught)
-            full = (clock >= caught) & (clock < caught + self.dwell_s)
+            full = (clock >= caught) & (clock < again)
             hand = places[_hand(beat)]
             hand[empty] = _stroke(clock[empty] - thrown, caught - thrown, leave, meet)
             hand[full] = _stroke(clock[full] - caught, self.dwell_s, meet, throw_again)
@@ -108,8 +109,8 @@ class Juggling:
         return (clock >= throw.beat * self.beat_s) & (clock < caught)
 
     def _held(self, throw: Throw, clock: np.ndarray) -> np.ndarray:
-        thrown_again = (throw.beat + throw.height) * self.beat_s
-        return (clock >= thrown_again - self.dwell_s) & (clock < thrown_again)
+        again = (throw.beat + throw.height) * self.beat_s
+        return (clock >= again - self.dwell_s) & (clock < again)
 
     def _release(self, beat: int) -> tuple[Place, Place]:
         """Where a beat's hand throws, and with what velocity; that is 0 where it has nothing to throw."""

@@ -12,10 +12,14 @@ from recording.truth import MeshSequence
 from simulator import shapes
 from simulator.body import load_body
 from simulator.dressing import dressed, holding
+from simulator.juggler import juggling_act
 from simulator.path import Path, path_through
 from simulator.person import walking_person
 from simulator.scene import Scene
 from simulator.things import Ball, Obstacle, Person
+
+_MOVING_KINDS = ("person", "ball")
+"""What moves as a whole; a juggler's arms move, but the juggler stands."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -29,13 +33,16 @@ class Actor:
 
 
 def actors(scene: Scene) -> tuple[Actor, ...]:
-    """Everything on the scene, numbered from 1: people, then balls, then obstacles, each in the scene's order."""
+    """Everything on the scene, numbered from 1, each in the scene's order.
+
+    People come first, then each juggler with the juggled balls, then other balls, then obstacles.
+    """
     unnamed: Counter[str] = Counter()
     cast = []
-    for number, (thing, kind, mesh) in enumerate(_meshes(scene), start=1):
+    for number, (given_name, kind, mesh) in enumerate(_meshes(scene), start=1):
         unnamed[kind] += 1
-        name = thing.name or f"{kind} {unnamed[kind]}"
-        record = ObjectRecord(id=number, name=name, kind=kind, moving=not isinstance(thing, Obstacle))
+        name = given_name or f"{kind} {unnamed[kind]}"
+        record = ObjectRecord(id=number, name=name, kind=kind, moving=kind in _MOVING_KINDS)
         cast.append(Actor(record=record, mesh=mesh))
     return tuple(cast)
 
@@ -46,22 +53,29 @@ def frame_times(scene: Scene) -> Float[np.ndarray, "frame"]:
 
 
 def walkers_centres(scene: Scene) -> list[Float[np.ndarray, "frame 2"]]:
-    """Where each person's centre stands on the ground in each frame, metres."""
+    """Where the centre of each person, and of each juggler, stands on the ground in each frame, metres."""
     times = frame_times(scene)
-    return [_walk(person).positions(times) for person in scene.people]
+    standing = [np.tile(juggler.position, (scene.frames, 1)) for juggler in scene.jugglers]
+    return [*(_walk(person).positions(times) for person in scene.people), *standing]
 
 
-def _meshes(scene: Scene) -> Iterator[tuple[Person | Ball | Obstacle, str, MeshSequence]]:
+def _meshes(scene: Scene) -> Iterator[tuple[str | None, str, MeshSequence]]:
+    """Everything's name if it has one, kind and mesh."""
     times = frame_times(scene)
     for person in scene.people:
         body = load_body(person.body)
         held = holding(body, person.props)
         walker = walking_person(dressed(body, person.props), _walk(person), times, phase=person.phase, holding=held)
-        yield person, "person", walker.mesh
+        yield person.name, "person", walker.mesh
+    for juggler in scene.jugglers:
+        act = juggling_act(juggler, times)
+        yield juggler.name, "juggler", act.mesh
+        for places in act.balls:
+            yield None, "ball", shapes.moved(shapes.ball(juggler.ball_radius), places)
     for ball in scene.balls:
-        yield ball, "ball", shapes.moved(shapes.ball(ball.radius), _flight(ball, times))
+        yield ball.name, "ball", shapes.moved(shapes.ball(ball.radius), _flight(ball, times))
     for obstacle in scene.obstacles:
-        yield obstacle, obstacle.shape, _solid(obstacle)
+        yield obstacle.name, obstacle.shape, _solid(obstacle)
 
 
 def _walk(person: Person) -> Path:

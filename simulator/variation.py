@@ -4,40 +4,52 @@ import numpy as np
 
 from recording.errors import InputError
 from simulator.body import body_names
-from simulator.clearance import smallest_clearance
+from simulator.clearance import crowded
+from simulator.juggling_scene import Juggler
 from simulator.path import FASTEST_WALK
 from simulator.scene import Scene, Vary
 from simulator.stage import walkers_centres
 from simulator.things import Person
 
-TRIES = 5000
-"""Draws before the search for one in which everybody keeps clear is given up."""
+TRIES = 1000
+"""Rounds of drawing anew those who come too near to somebody or something, before the search is given up."""
 _DIGITS = 4  # A tenth of a millimetre: the resolved scene stays readable.
 
 
 def varied(scene: Scene, seed: int) -> Scene:
-    """The scene as it happens under the seed: 0 is the scene itself, another one varies people's walks.
+    """The scene as it happens under the seed: 0 is the scene itself, another one varies people's walks and jugglers.
 
-    Every walk is drawn anew, evenly within the ranges of the scene's `[vary]`, until nobody comes nearer to
-    somebody or something than `[vary]` allows. The same seed gives the same scene, whatever the picture's
-    size. Balls and obstacles stay as they are.
+    Every walk and juggler is drawn anew, evenly within the ranges of the scene's `[vary]`; then those who come
+    nearer to somebody or something than `[vary]` allows are drawn again, until nobody does. The same seed gives
+    the same scene, whatever the picture's size. Balls that nobody juggles and obstacles stay as they are.
     """
     if seed < 0:
         raise InputError(f"expected a seed of 0 (the scene itself) or above, got {seed}")
-    if seed == 0 or not scene.people:
+    given: tuple[Person | Juggler, ...] = (*scene.people, *scene.jugglers)
+    if seed == 0 or not given:
         return scene
     generator = np.random.default_rng(seed)
+    vary, today, people = scene.vary, given, len(scene.people)
+    again = [True] * len(given)
     for _ in range(TRIES):
-        people = tuple(_varied_person(person, scene.vary, generator) for person in scene.people)
-        day = scene.model_copy(update={"people": people})
-        clearance = smallest_clearance(walkers_centres(day), day.obstacles)
-        keep_off_people = clearance.people_m >= scene.vary.clearance_m
-        if keep_off_people and clearance.obstacles_m >= scene.vary.obstacle_clearance_m:
+        drawn = zip(given, today, again, strict=True)
+        today = tuple(_varied_anybody(one, vary, generator) if anew else kept for one, kept, anew in drawn)
+        day = scene.model_copy(update={"people": today[:people], "jugglers": today[people:]})
+        centres = walkers_centres(day)
+        near = crowded(centres, day.obstacles, people_m=vary.clearance_m, obstacles_m=vary.obstacle_clearance_m)
+        if not near.any():
             return day
+        again = near.tolist()
     raise InputError(
-        f"scene {scene.name!r}, seed {seed}: in {TRIES} draws people never kept {scene.vary.clearance_m} m from one "
+        f"scene {scene.name!r}, seed {seed}: in {TRIES} rounds people never kept {scene.vary.clearance_m} m from one "
         f"another and {scene.vary.obstacle_clearance_m} m from obstacles: narrow the ranges of [vary], or lower these"
     )
+
+
+def _varied_anybody(one: Person | Juggler, vary: Vary, generator: np.random.Generator) -> Person | Juggler:
+    if isinstance(one, Person):
+        return _varied_person(one, vary, generator)
+    return _varied_juggler(one, vary, generator)
 
 
 def _varied_person(person: Person, vary: Vary, generator: np.random.Generator) -> Person:
@@ -59,6 +71,29 @@ def _varied_person(person: Person, vary: Vary, generator: np.random.Generator) -
     if vary.bodies:
         changes["body"] = body
     return person.model_copy(update=changes)
+
+
+def _varied_juggler(juggler: Juggler, vary: Vary, generator: np.random.Generator) -> Juggler:
+    """The juggler on another day, left or right of where the scene has it, all throws slower or faster.
+
+    Balls fly as gravity has it on every day: who juggles more slowly throws higher.
+    """
+    aside, faster = generator.uniform(-1.0, 1.0, size=2)
+    phase = round(float(generator.uniform(0.0, 2 * sum(juggler.siteswap))), _DIGITS)
+    body = str(generator.choice(body_names()))
+    facing = np.radians(juggler.facing_deg)
+    place = np.array(juggler.position) + aside * vary.sideways_m * np.array([-np.sin(facing), np.cos(facing)])
+    factor = 1.0 + float(faster) * vary.speed_share
+    changes: dict[str, object] = {
+        "position": tuple(round(float(metres), _DIGITS) for metres in place),
+        "beat_s": round(juggler.beat_s / factor, _DIGITS),
+        "dwell_s": round(juggler.dwell_s / factor, _DIGITS),
+    }
+    if vary.phase:
+        changes["phase"] = phase
+    if vary.bodies:
+        changes["body"] = body
+    return juggler.model_copy(update=changes)
 
 
 def _shifted(waypoints: tuple[tuple[float, float], ...], aside_m: float) -> tuple[tuple[float, float], ...]:

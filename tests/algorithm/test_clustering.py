@@ -171,8 +171,10 @@ def test_followers_take_the_label_of_the_nearest_in_their_middle_frame() -> None
             (9, line([0, 0.9, 1], step, 9)),  # In its middle frame no sampled one is there.
         ]
     )
-    label = followers(made, np.array([True, True, False, False, False]), np.array([4, 7]))
+    label = followers(made, np.array([True, True, False, False, False]), np.array([4, 7]), radius_m=0.5)
     np.testing.assert_array_equal(label, [4, 7, 4, 7, -1])
+    label = followers(made, np.array([True, True, False, False, False]), np.array([4, 7]), radius_m=0.15)
+    np.testing.assert_array_equal(label, [4, 7, -1, 7, -1])
 
 
 def test_a_chain_is_cut_where_it_is_weakest() -> None:

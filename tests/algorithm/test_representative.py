@@ -105,3 +105,14 @@ def test_a_part_of_a_curve_keeps_its_frames() -> None:
     np.testing.assert_array_equal(part.position[:, 0], [2, 3, 4, 5])
     np.testing.assert_array_equal(part.points, [2, 3, 4, 5])
     assert len(curve.between(13, 12).position) == 0
+
+
+def test_far_from_every_dense_frame_the_last_correction_goes_on() -> None:
+    """Points that slip while many are seen must not make the curve jump where few are."""
+    step = np.array([0.04, 0.0, 0.0])
+    dense = [(0, np.array([0.0, 0.1 * number, 3.0]) + np.outer(np.arange(40), step)) for number in range(20)]
+    thin = [(30, np.array([0.9, 0.1 * number, 3.0]) + np.outer(np.arange(90), 1.2 * step)) for number in range(3)]
+    curve = representative(trajectories_of(dense + thin), drift_frames=3.0)
+    steps = np.diff(curve.position[:, 0])
+    assert steps.min() > 0.0
+    assert steps.max() < 0.15

@@ -103,10 +103,13 @@ def test_the_examples_in_the_documentation_are_scenes() -> None:
         ),
         ({"obstacles": [{"shape": "bux", "position": [0, 0, 0]}]}, "obstacles.0.shape: .* 'box', 'cylinder' or 'cone'"),
         ({"obstacles": [{"shape": "box", "radius": 1, "position": [0, 0, 0]}]}, "expected a box to have 'size'"),
-        ({"obstacles": []}, "expected at least one of 'people', 'balls' and 'obstacles'"),
+        ({"obstacles": []}, "expected at least one of 'people', 'jugglers', 'balls' and 'obstacles'"),
         ({"vary": {"speed_share": 1}}, "vary.speed_share: .* less than 1"),
         ({"vary": {"sideway": 1}}, "unknown key 'vary.sideway', did you mean 'sideways_m'"),
-        ({"sensor": {"preset": "kinect"}}, "sensor.preset: input should be 'ideal', got 'kinect'"),
+        (
+            {"sensor": {"preset": "kinect"}},
+            "sensor.preset: input should be 'ideal' or 'structured_light', got 'kinect'",
+        ),
         ({"paper": {"eps1": 1}}, "key 'paper.eps2' is missing"),
     ],
 )

@@ -1,5 +1,6 @@
 """Seeds vary people's walks within the stated ranges, and keep people clear of one another and of obstacles."""
 
+from math import dist
 from typing import Any
 
 import numpy as np
@@ -82,9 +83,23 @@ def test_people_keep_clear_on_every_day() -> None:
         assert obstacles_m >= 0.3
 
 
+@pytest.mark.parametrize("name", ["9men", "house", "forest", "4men"])
+def test_a_scene_of_table_1_has_its_days(name: str) -> None:
+    scene = load_scene(name)
+    aside = []
+    for seed in (*range(1, 21), *range(1001, 1011)):
+        day = varied(scene, seed)
+        people_m, obstacles_m = clearance_of(day)
+        assert people_m >= 0.6
+        assert obstacles_m >= 0.3
+        aside += [dist(a.waypoints[0], b.waypoints[0]) for a, b in zip(scene.people, day.people, strict=True)]
+    assert max(aside) <= 0.3 + 1e-3
+    assert np.mean(aside) > 0.1  # Of 0.15, were there nobody and nothing to keep clear of.
+
+
 def test_a_scene_without_a_clear_day_is_refused() -> None:
     walk = {"body": "man", "waypoints": [[-2, 1], [2, 1]], "speed": 1.2}
-    with pytest.raises(InputError, match=r"seed 1: in \d+ draws people never kept 3.0 m"):
+    with pytest.raises(InputError, match=r"seed 1: in \d+ rounds people never kept 3.0 m"):
         varied(scene_of(people=[walk, walk], vary={"clearance_m": 3}), 1)
 
 
