@@ -173,7 +173,7 @@ def test_followers_take_the_label_of_the_nearest_in_their_middle_frame() -> None
     )
     label = followers(made, np.array([True, True, False, False, False]), np.array([4, 7]), radius_m=0.5)
     np.testing.assert_array_equal(label, [4, 7, 4, 7, -1])
-    label = followers(made, np.array([True, True, False, False, False]), np.array([4, 7]), radius_m=0.15)
+    label = followers(made, np.array([True, True, False, False, False]), np.array([4, 7]), radius_m=0.25)
     np.testing.assert_array_equal(label, [4, 7, -1, 7, -1])
 
 
