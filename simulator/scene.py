@@ -15,6 +15,7 @@ from recording.camera import Camera, looking_at
 from recording.checks import Frozen, nearest_name, toml_document, validated
 from recording.errors import InputError
 from simulator.juggling_scene import Juggler
+from simulator.motion_file import with_motion_files
 from simulator.sensor import Ideal, Sensor
 from simulator.things import Ball, Obstacle, Person, Point, Positive
 from simulator.trajectory_file import with_recorded_walks
@@ -132,5 +133,5 @@ def load_scene(name_or_path: str | Path) -> Scene:
         place = Path(text)
     else:
         raise InputError(f"unknown scene {text!r}: {nearest_name(text, scene_names())} (or the path of a .toml file)")
-    document = with_recorded_walks(toml_document(place), place=place)
+    document = with_motion_files(with_recorded_walks(toml_document(place), place=place), place=place)
     return validated(Scene, document, source=str(place))

@@ -152,7 +152,7 @@ def picture_size(text: str, scene: Scene) -> tuple[int, int]:
 
 def _changed(scene: Scene, *, size: tuple[int, int] | None, frames: int | None, sensor: str | None) -> Scene:
     """The scene with what was asked for in place of what it says, held against the schema again."""
-    document = scene.model_dump()
+    document = scene.model_dump() | {"people": scene.people}  # As they are: a dump forgets where motion files lie.
     if size is not None:
         document["camera"] |= {"width": size[0], "height": size[1]}
     if frames is not None:

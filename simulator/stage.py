@@ -15,6 +15,7 @@ from simulator.dressing import dressed, holding
 from simulator.juggler import juggling_act
 from simulator.path import Path, path_through
 from simulator.person import walking_person
+from simulator.retarget import ground_track, performing_person
 from simulator.scene import Scene
 from simulator.things import Ball, Obstacle, Person
 
@@ -56,17 +57,14 @@ def walkers_centres(scene: Scene) -> list[Float[np.ndarray, "frame 2"]]:
     """Where the centre of each person, and of each juggler, stands on the ground in each frame, metres."""
     times = frame_times(scene)
     standing = [np.tile(juggler.position, (scene.frames, 1)) for juggler in scene.jugglers]
-    return [*(_walk(person).positions(times) for person in scene.people), *standing]
+    return [*(_ground_track(person, times) for person in scene.people), *standing]
 
 
 def _meshes(scene: Scene) -> Iterator[tuple[str | None, str, MeshSequence]]:
     """Everything's name if it has one, kind and mesh."""
     times = frame_times(scene)
     for person in scene.people:
-        body = load_body(person.body)
-        held = holding(body, person.props)
-        walker = walking_person(dressed(body, person.props), _walk(person), times, phase=person.phase, holding=held)
-        yield person.name, "person", walker.mesh
+        yield person.name, "person", _person(person, times)
     for juggler in scene.jugglers:
         act = juggling_act(juggler, times)
         yield juggler.name, "juggler", act.mesh
@@ -76,6 +74,21 @@ def _meshes(scene: Scene) -> Iterator[tuple[str | None, str, MeshSequence]]:
         yield ball.name, "ball", shapes.moved(shapes.ball(ball.radius), _flight(ball, times))
     for obstacle in scene.obstacles:
         yield obstacle.name, obstacle.shape, _solid(obstacle)
+
+
+def _person(person: Person, times: Float[np.ndarray, "frame"]) -> MeshSequence:
+    body = load_body(person.body)
+    held = holding(body, person.props)
+    clothed = dressed(body, person.props)
+    if person.motion is not None:
+        return performing_person(clothed, person.motion, times, holding=held)
+    return walking_person(clothed, _walk(person), times, phase=person.phase, holding=held).mesh
+
+
+def _ground_track(person: Person, times: Float[np.ndarray, "frame"]) -> Float[np.ndarray, "frame 2"]:
+    if person.motion is not None:
+        return ground_track(load_body(person.body), person.motion, times)
+    return _walk(person).positions(times)
 
 
 def _walk(person: Person) -> Path:

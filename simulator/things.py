@@ -11,6 +11,7 @@ from pydantic import Field, field_validator, model_validator
 
 from recording.checks import Frozen, nearest_name
 from simulator.body import body_names
+from simulator.motion_file import Motion
 from simulator.path import FASTEST_WALK
 from simulator.props import Prop, check_props
 
@@ -20,13 +21,16 @@ Point = tuple[float, float, float]
 
 
 class Person(Frozen):
-    """Somebody who walks along a path, waits at its first way-point before and stands at its last after."""
+    """Somebody who walks along a path, waits at its first way-point before and stands at its last after.
+
+    Or somebody who does what was captured: then there is a `motion`, and no path.
+    """
 
     name: str | None = None
     """Shown in reports; `person 1` and so on where it is not given."""
     body: str
     """A body in `scenes/assets`."""
-    waypoints: Annotated[tuple[Ground, ...], Field(min_length=2)]
+    waypoints: tuple[Ground, ...] = ()
     """Places on the ground (x, y) that are passed, metres: two make a straight line, more a smooth curve."""
     speed: Annotated[float, Field(gt=0, le=FASTEST_WALK)] | None = None
     """Metres a second, the same all along; or else `times`."""
@@ -38,6 +42,8 @@ class Person(Frozen):
     """Where in the gait's cycle the first frame finds the walker, in cycles: at 0 and 1 the left foot comes down."""
     props: tuple[Prop, ...] = ()
     """What is carried or worn; it counts as part of the person."""
+    motion: Motion | None = Field(default=None, exclude_if=lambda motion: motion is None)
+    """A captured motion in place of a path; scenes without one are written as if there were no such key."""
 
     @field_validator("body")
     @classmethod
@@ -46,9 +52,22 @@ class Person(Frozen):
             raise ValueError(f"expected a body's name, {nearest_name(body, body_names())}")
         return body
 
+    @field_validator("waypoints")
+    @classmethod
+    def _enough(cls, waypoints: tuple[Ground, ...]) -> tuple[Ground, ...]:
+        if len(waypoints) == 1:
+            raise ValueError("expected at least 2 way-points")
+        return waypoints
+
     @model_validator(mode="after")
     def _path(self) -> "Person":
         check_props(self.props)
+        if self.motion is not None:
+            if self.waypoints or self.speed is not None or self.times is not None or self.start or self.phase:
+                raise ValueError("expected 'motion' in place of way-points, 'speed', 'times', 'start' and 'phase'")
+            return self
+        if not self.waypoints:
+            raise ValueError("expected 'waypoints' (or a 'trajectory' or a 'motion')")
         _check_timing(self.waypoints, self.speed, self.times)
         for (a, b), pace in zip(pairwise(self.waypoints), self._paces(), strict=True):
             if pace > FASTEST_WALK:
@@ -57,8 +76,8 @@ class Person(Frozen):
 
     @property
     def top_speed(self) -> float:
-        """The speed on the fastest stretch, metres a second."""
-        return max(self._paces())
+        """The speed on the fastest stretch, metres a second; 0 where there is no path."""
+        return max(self._paces(), default=0.0)
 
     def _paces(self) -> list[float]:
         lengths = [dist(a, b) for a, b in pairwise(self.waypoints)]

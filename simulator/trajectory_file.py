@@ -80,7 +80,7 @@ def recorded_walk(trajectory: Trajectory, folder: Path) -> tuple[list[tuple[floa
     A smoothing spline leaves what is slow and straight as it is, whatever the file's frame rate, and takes away half
     of a movement of `QUICKEST_HZ`, most of a quicker one; it bridges missing frames.
     """
-    path = _inside(folder, trajectory.file)
+    path = file_inside(folder, trajectory.file)
     rows = _rows(path)
     if not rows:
         raise InputError(f"{path}: expected lines 'id frame x y', got none")
@@ -94,13 +94,11 @@ def recorded_walk(trajectory: Trajectory, folder: Path) -> tuple[list[tuple[floa
     return waypoints, [round(float(knot), _DIGITS) for knot in knots]
 
 
-def _inside(folder: Path, file: str) -> Path:
+def file_inside(folder: Path, file: str) -> Path:
     """The file's path; refused where it leads out of the folder."""
     path = (folder / file).resolve()
     if not path.is_relative_to(folder.resolve()):
-        raise InputError(
-            f"trajectory file {file!r}: expected one in the scene's folder {folder} or below: copy it there"
-        )
+        raise InputError(f"file {file!r}: expected one in the scene's folder {folder} or below: copy it there")
     return path
 
 

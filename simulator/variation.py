@@ -6,6 +6,7 @@ from recording.errors import InputError
 from simulator.body import body_names
 from simulator.clearance import crowded
 from simulator.juggling_scene import Juggler
+from simulator.motion_file import Motion
 from simulator.path import FASTEST_WALK
 from simulator.scene import Scene, Vary
 from simulator.stage import walkers_centres
@@ -57,6 +58,9 @@ def _varied_person(person: Person, vary: Vary, generator: np.random.Generator) -
     aside, faster, later = generator.uniform(-1.0, 1.0, size=3)
     phase = round(float(generator.uniform()), _DIGITS)
     body = str(generator.choice(body_names()))
+    if person.motion is not None:
+        moved = {"motion": _beside(person.motion, float(aside) * vary.sideways_m)}
+        return person.model_copy(update=moved | ({"body": body} if vary.bodies else {}))
     factor = min(1.0 + float(faster) * vary.speed_share, FASTEST_WALK / max(person.top_speed, 1e-9))
     changes: dict[str, object] = {
         "waypoints": _shifted(person.waypoints, float(aside) * vary.sideways_m),
@@ -94,6 +98,13 @@ def _varied_juggler(juggler: Juggler, vary: Vary, generator: np.random.Generator
     if vary.bodies:
         changes["body"] = body
     return juggler.model_copy(update=changes)
+
+
+def _beside(motion: Motion, aside_m: float) -> Motion:
+    """The motion performed to the left of where the scene has it, as seen by who performs it."""
+    heading = np.radians(motion.heading_deg)
+    place = np.array(motion.position) + aside_m * np.array([-np.sin(heading), np.cos(heading)])
+    return motion.model_copy(update={"position": tuple(round(float(metres), _DIGITS) for metres in place)})
 
 
 def _shifted(waypoints: tuple[tuple[float, float], ...], aside_m: float) -> tuple[tuple[float, float], ...]:
