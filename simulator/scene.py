@@ -105,6 +105,8 @@ class Scene(Frozen):
     vary: Vary = Vary()
     sensor: Sensor = Ideal()
     paper: PaperSettings | None = None
+    stress_test: bool = False
+    """Whether people may come nearer to one another and to obstacles than `vary` says, as bodies never do."""
 
     @model_validator(mode="after")
     def _something_named_once(self) -> "Scene":

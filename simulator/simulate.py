@@ -94,6 +94,7 @@ def prepared(
         made_by=f"unocclude {VERSION}",
     )
     clearance = smallest_clearance(walkers_centres(resolved), resolved.obstacles)
+    _require_room(resolved, clearance)
     return Simulation(scene=resolved, metadata=metadata, cast=cast, clearance=clearance)
 
 
@@ -148,6 +149,17 @@ def picture_size(text: str, scene: Scene) -> tuple[int, int]:
     if match := re.fullmatch(r"([1-9]\d*)x", text):
         return int(match[1]) * scene.camera.width, int(match[1]) * scene.camera.height
     raise InputError(f"expected a picture size such as 640x480 or 2x, got {text!r}")
+
+
+def _require_room(scene: Scene, clearance: Clearance) -> None:
+    """Raise where somebody goes through another or through an obstacle, unless the scene is a stress test."""
+    wanted = ((clearance.people_m, scene.vary.clearance_m), (clearance.obstacles_m, scene.vary.obstacle_clearance_m))
+    if not scene.stress_test and any(found < least - 1e-9 for found, least in wanted):
+        raise InputError(
+            f"scene {scene.name!r}: expected {wanted[0][1]:g} m between the centres of people and {wanted[1][1]:g} m "
+            f"to obstacles, got {clearance.sentence}: move the paths, lower [vary] clearance_m or "
+            "obstacle_clearance_m, or call it a stress_test"
+        )
 
 
 def _changed(scene: Scene, *, size: tuple[int, int] | None, frames: int | None, sensor: str | None) -> Scene:

@@ -210,3 +210,28 @@ def test_nobody_in_the_wall_is_cut_by_the_pictures_edge_or_crowded() -> None:
             border = np.concatenate([depth[0], depth[-1], depth[:, 0], depth[:, -1]])
             assert np.isnan(border).all()
             assert np.isfinite(depth).sum() > 100
+
+
+def test_people_who_walk_through_each_other_are_refused_unless_it_is_a_stress_test(tmp_path: Path) -> None:
+    text = """
+name = "clash"
+frames = 30
+fps = 15
+[camera]
+position = [0, -4, 1.5]
+look_at = [0, 0, 1]
+[[people]]
+body = "man"
+waypoints = [[-1, 0], [1, 0]]
+speed = 1.0
+[[people]]
+body = "woman"
+waypoints = [[1, 0], [-1, 0]]
+speed = 1.0
+"""
+    place = tmp_path / "clash.toml"
+    place.write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match=r"clash.*expected 0\.6 m between the centres of people.*got at least 0\.0"):
+        prepared(place)
+    place.write_text("stress_test = true\n" + text, encoding="utf-8")
+    assert prepared(place).clearance.people_m < 0.1
