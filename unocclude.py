@@ -13,7 +13,6 @@ instead of files:
 import json
 import sys
 import tomllib
-from collections.abc import Iterator
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
@@ -32,9 +31,8 @@ from evaluation.doctor import diagnosis
 from evaluation.picture import draw_overview
 from evaluation.scores import check_belongs, evaluate, scores
 from evaluation.summary import aligned_text, summary
-from evaluation.table1 import PAPER, PaperRow, own_row, table_cells
+from evaluation.table1 import measured_rows, table_cells
 from evaluation.visibility import visibility_of
-from recording.checks import nearest_name
 from recording.correspondence import flow_between, places_of, track
 from recording.errors import InputError
 from recording.importing import Calibration, import_images
@@ -348,24 +346,8 @@ def table1_command(
         size: Picture size in place of the scenes' own, such as `2x`.
     """
     with common.progress():
-        rows = [(row, own_row(found, visibility_of(found))) for row, found in _table1_recordings(scenes, output, size)]
+        rows = measured_rows(scenes, folder=output, size=size)
     print(aligned_text(table_cells(rows)))
-
-
-def _table1_recordings(
-    scenes: tuple[str, ...], folder: Path | None, size: str | None
-) -> Iterator[tuple[PaperRow, Recording]]:
-    """The paper's rows that were asked for, each with a recording of its scene."""
-    known = {row.scene: row for row in PAPER}
-    for name in known if "all" in scenes else scenes:
-        if name not in known:
-            raise InputError(f"--scenes: unknown scene {name!r}, {nearest_name(name, known)}")
-        if folder is None:
-            yield known[name], simulate(name, size=size)
-            continue
-        if not (folder / name).exists():
-            write_simulation(prepared(name, size=size), folder / name)
-        yield known[name], load_recording(folder / name)
 
 
 @app.command

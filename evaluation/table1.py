@@ -2,9 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
-from evaluation.visibility import Visibility, holes, longest_hole
+from evaluation.visibility import holes, longest_hole, visibility_of
+from recording.checks import nearest_name
+from recording.errors import InputError
 from recording.recording import Recording
+from recording.store import load_recording
+from simulator.simulate import prepared, simulate, write_simulation
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,8 +85,33 @@ class OwnRow:
     """Frames; 0 without a hole."""
 
 
-def own_row(recording: Recording, visibility: Visibility) -> OwnRow:
+def measured_rows(
+    scenes: Sequence[str], *, folder: Path | None = None, size: str | None = None
+) -> list[tuple[PaperRow, OwnRow]]:
+    """The paper's rows of the scenes (`all` for every one), each with ours.
+
+    With a `folder` the recordings are kept there, and those that it holds already are measured as they are.
+    """
+    known = {row.scene: row for row in PAPER}
+    unknown = next((name for name in scenes if name not in (*known, "all")), None)
+    if unknown is not None:
+        raise InputError(f"--scenes: unknown scene {unknown!r}, {nearest_name(unknown, known)}")
+    names = known if "all" in scenes else scenes
+    return [(known[name], own_row(_recorded(name, folder, size))) for name in names]
+
+
+def _recorded(scene: str, folder: Path | None, size: str | None) -> Recording:
+    """The recording of a scene, from the folder if there is one."""
+    if folder is None:
+        return simulate(scene, size=size)
+    if not (folder / scene).exists():
+        write_simulation(prepared(scene, size=size), folder / scene)
+    return load_recording(folder / scene)
+
+
+def own_row(recording: Recording) -> OwnRow:
     """What Table 1 counts, from a recording that knows its objects."""
+    visibility = visibility_of(recording)
     objects = recording.metadata.objects or ()
     return OwnRow(
         frames=recording.metadata.frames,
