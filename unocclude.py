@@ -33,6 +33,7 @@ from evaluation.scores import check_belongs, evaluate, scores
 from evaluation.summary import aligned_text, summary
 from evaluation.table1 import measured_rows, table_cells
 from evaluation.visibility import visibility_of
+from recording.atomic import whole_file
 from recording.correspondence import flow_between, places_of, track
 from recording.errors import InputError
 from recording.importing import Calibration, import_images
@@ -130,8 +131,9 @@ def demo(*, output: Output = Path("demo"), seed: int = 0, common: Writing = WRIT
     solve_command(place, common=common)
     recording, motions = load_recording(place), load_motions(place / "motions.parquet")
     found = evaluate(recording, motions)
-    (output / "scores.json").write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
-    draw_overview(recording, motions, output / "overview.png")
+    with whole_file(output / "scores.json", overwrite=common.overwrite) as partial:
+        partial.write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
+    draw_overview(recording, motions, output / "overview.png", overwrite=common.overwrite)
     print(summary(found))
     print(f"pictures: {output / 'overview.png'}")
 

@@ -52,7 +52,7 @@ def real(*, pictures: Path | None = None, preset: str = "default", json: bool = 
         motions = unocclude.solve(recording, unocclude.preset_settings(preset))
         rows.append({"recording": name, **score_row(unocclude.evaluate(recording, motions))})
         if pictures is not None:
-            draw_overview(recording, motions, pictures / f"{name}.png")
+            draw_overview(recording, motions, pictures / f"{name}.png", overwrite=True)
     show("real recordings", rows, as_json=json)
 
 

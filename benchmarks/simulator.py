@@ -12,12 +12,10 @@ sys.path[0] = str(Path(__file__).parents[1])  # This folder's simulator.py would
 
 
 import cProfile
-import sys
 import tempfile
 import time
 from collections.abc import Callable
 from itertools import islice
-from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
@@ -200,8 +198,8 @@ def open3d(stage: Stage, _: Backend) -> Callable[[int], Faces] | None:
 def embree(stage: Stage, _: Backend) -> Callable[[int], Faces] | None:
     """Trimesh with Embree: a new mesh for each frame; it tells the face alone."""
     try:
-        import trimesh  # noqa: PLC0415 - the same.
-        from trimesh.ray.ray_pyembree import RayMeshIntersector  # noqa: PLC0415 - the same.
+        import trimesh  # noqa: PLC0415 - only this caster wants it.
+        from trimesh.ray.ray_pyembree import RayMeshIntersector  # noqa: PLC0415 - embreex need not be there.
     except ImportError as error:
         print(f"without embreex: {error}", file=sys.stderr)
         return None

@@ -23,7 +23,7 @@ _DOTS = 60_000
 """Points drawn in one panel at the most."""
 
 
-def draw_overview(recording: Recording, motions: Motions, path: Path, *, overwrite: bool = True) -> None:
+def draw_overview(recording: Recording, motions: Motions, path: Path, *, overwrite: bool = False) -> None:
     """Frames, segments, representatives and completed motion of a recording, as PNG or SVG by the ending.
 
     Above: depth at five moments, with the points in the colours of their motions, the completed ones paler.

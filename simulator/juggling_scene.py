@@ -7,8 +7,8 @@ from typing import Annotated
 
 from pydantic import Field, field_validator, model_validator
 
-from recording.checks import Frozen, nearest_name
-from simulator.body import body_names
+from recording.checks import Frozen
+from simulator.body_name import BodyName
 from simulator.siteswap import check_siteswap
 from simulator.things import Ground, Positive
 
@@ -18,7 +18,7 @@ class Juggler(Frozen):
 
     name: str | None = None
     """Shown in reports; `juggler 1` and so on where it is not given."""
-    body: str
+    body: BodyName
     """A body in `scenes/assets`."""
     position: Ground = (0.0, 0.0)
     """Where the juggler stands (x, y), metres."""
@@ -43,13 +43,6 @@ class Juggler(Frozen):
     """Distance between where the left and the right hand throw, metres; 0.4 arms if not given."""
     catch_width: Positive | None = None
     """Distance between where the left and the right hand catch, metres; 1.05 arms if not given."""
-
-    @field_validator("body")
-    @classmethod
-    def _known(cls, body: str) -> str:
-        if body not in body_names():
-            raise ValueError(f"expected a body's name, {nearest_name(body, body_names())}")
-        return body
 
     @field_validator("siteswap")
     @classmethod

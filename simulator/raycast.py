@@ -225,7 +225,7 @@ def _libraries(wanted: str | None) -> tuple[ModuleType, ModuleType]:
         os.environ[LIBRARY_VARIABLE] = library
     with contextlib.nullcontext() if wanted else _silent_standard_error():
         import drjit  # noqa: PLC0415 - the variable must be set first.
-        import mitsuba  # noqa: PLC0415 - the same.
+        import mitsuba  # noqa: PLC0415 - it imports drjit, hence the same.
     drjit.set_thread_count(1)  # Trees of a body's size are built no sooner by several; processes share the frames.
     return mitsuba, drjit
 

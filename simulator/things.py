@@ -9,8 +9,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, field_validator, model_validator
 
-from recording.checks import Frozen, nearest_name
-from simulator.body import body_names
+from recording.checks import Frozen
+from simulator.body_name import BodyName
 from simulator.motion_file import Motion
 from simulator.path import FASTEST_WALK
 from simulator.props import Prop, check_props
@@ -28,7 +28,7 @@ class Person(Frozen):
 
     name: str | None = None
     """Shown in reports; `person 1` and so on where it is not given."""
-    body: str
+    body: BodyName
     """A body in `scenes/assets`."""
     waypoints: tuple[Ground, ...] = ()
     """Places on the ground (x, y) that are passed, metres: two make a straight line, more a smooth curve."""
@@ -44,13 +44,6 @@ class Person(Frozen):
     """What is carried or worn; it counts as part of the person."""
     motion: Motion | None = Field(default=None, exclude_if=lambda motion: motion is None)
     """A captured motion in place of a path; scenes without one are written as if there were no such key."""
-
-    @field_validator("body")
-    @classmethod
-    def _known(cls, body: str) -> str:
-        if body not in body_names():
-            raise ValueError(f"expected a body's name, {nearest_name(body, body_names())}")
-        return body
 
     @field_validator("waypoints")
     @classmethod

@@ -88,7 +88,7 @@ def empty() -> Motions:
 
 def with_rows(motions: Motions, **columns: np.ndarray) -> Motions:
     """The motions with other columns, and with the representatives that follow from them."""
-    changed = replace(motions, **columns)  # type: ignore[arg-type]
+    changed = replace(motions, **columns)
     return replace(changed, representatives=mean_places(changed))
 
 

@@ -67,4 +67,4 @@ def test_an_impossible_path_is_said_to_be_so(
     waypoints: list[tuple[float, float]], given: dict[str, object], said: str
 ) -> None:
     with pytest.raises(InputError, match=said):
-        path_through(waypoints, **given)  # type: ignore[arg-type]
+        path_through(waypoints, **given)

@@ -125,12 +125,12 @@ def test_a_recording_shows_a_prop_as_its_carrier() -> None:
         "people": [{"body": "man", "waypoints": [[-1, 0], [1, 0]], "speed": 1, "start": -0.5}],
     }
     props = [{"kind": "umbrella"}, {"kind": "suitcase", "side": "left"}, {"kind": "coat"}]
-    dressed_scene = scene | {"people": [scene["people"][0] | {"props": props}]}  # type: ignore[index]
+    dressed_scene = scene | {"people": [scene["people"][0] | {"props": props}]}
     bare, whole = (simulate(Scene.model_validate(document)) for document in (scene, dressed_scene))
     assert verify(whole).passes, verify(whole).text
     assert len(whole.metadata.objects or ()) == 1
     for number, frame in enumerate(whole.frames):
-        assert np.unique(frame.labels.objectid).tolist() == [0, 1]  # type: ignore[union-attr]
+        assert np.unique(frame.labels.objectid).tolist() == [0, 1]
         assert frame.seen.sum() > 1.4 * bare.frames[number].seen.sum()
 
 

@@ -89,7 +89,7 @@ def test_a_noisy_recording_keeps_its_truth() -> None:
     assert noisy.metadata.sensor == {"preset": "structured_light"} | parameters
     for sensed, clean in zip(noisy.frames, exact.frames, strict=True):
         np.testing.assert_array_equal(sensed.clean_depth, clean.depth)
-        np.testing.assert_array_equal(sensed.labels.objectid, clean.labels.objectid)  # type: ignore[union-attr]
+        np.testing.assert_array_equal(sensed.labels.objectid, clean.labels.objectid)
         error = (sensed.depth - clean.depth)[sensed.seen]
         assert 0 < np.abs(error).max() < 0.006
         assert np.mean(sensed.reason == OUT_OF_RANGE) > 0.3  # The near box and the far wall.
