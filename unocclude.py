@@ -32,7 +32,6 @@ from evaluation.picture import draw_overview
 from evaluation.scores import check_belongs, evaluate, scores
 from evaluation.summary import aligned_text, summary
 from evaluation.table1 import measured_rows, table_cells
-from evaluation.visibility import visibility_of
 from recording.atomic import whole_file
 from recording.correspondence import flow_between, places_of, track
 from recording.errors import InputError
@@ -44,6 +43,7 @@ from recording.recording import Recording
 from recording.store import load_recording, save_recording
 from recording.verify import verify
 from recording.version import VERSION
+from recording.visibility import visibility_of
 from simulator.scene import scene_names
 from simulator.simulate import prepared, simulate, write_simulation
 

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Int64
 
-from evaluation.visibility import HIDDEN_BELOW, Visibility, visibility_of
 from recording.errors import InputError
 from recording.progress import tracked
 from recording.recording import Recording
+from recording.visibility import HIDDEN_BELOW, Visibility, visibility_of
 
 NOT_HIDDEN = 0
 """The cause where an object is not hidden."""

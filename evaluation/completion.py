@@ -10,10 +10,10 @@ from jaxtyping import Bool, Float64, Int64
 
 from evaluation.observations import BACKGROUND, MaterialPoints, Observations
 from evaluation.surfaces import HiddenSurfaces, recalled
-from evaluation.visibility import Visibility, hidden_lengths
 from recording.motions import NOISE, Motions
 from recording.recording import Recording
 from recording.truth import MeshSequence
+from recording.visibility import Visibility, hidden_lengths
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

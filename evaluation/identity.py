@@ -11,8 +11,8 @@ import numpy as np
 from jaxtyping import Float64, Int64
 from scipy.optimize import linear_sum_assignment
 
-from evaluation.visibility import Visibility
 from recording.motions import Motions, Representative, mean_places
+from recording.visibility import Visibility
 
 REACH_M = 1.0
 """At this distance and beyond two places have nothing in common, metres."""

@@ -7,8 +7,8 @@ import numpy as np
 from evaluation.clustering import contingency, majority
 from evaluation.observations import BACKGROUND, Observations
 from evaluation.segmentation import episodes, motion_table, segment_table
-from evaluation.visibility import Visibility, holes
 from recording.motions import NOISE, Motions
+from recording.visibility import Visibility, holes
 
 
 def link_precision(motions: Motions, observations: Observations) -> float | None:

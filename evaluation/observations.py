@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float32, Int64
 
-from evaluation.visibility import Visibility
 from recording.errors import InputError
 from recording.frame import Frame, Labels
 from recording.motions import Motions
 from recording.progress import tracked
 from recording.recording import Recording
+from recording.visibility import Visibility
 
 BACKGROUND = 0
 """The object of everything that does not move: walls, ground, pixels without label."""

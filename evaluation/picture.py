@@ -8,12 +8,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from algorithm.depth_image import DepthRange, depth_range
-from evaluation.visibility import visibility_of
 from recording.atomic import whole_file
 from recording.camera import Camera, transformed
 from recording.errors import InputError
 from recording.motions import NOISE, Motions, Representative, mean_places
 from recording.recording import Recording
+from recording.visibility import visibility_of
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F0E442", "#000000")
 """Okabe and Ito's palette, which colour-blind people can tell apart."""

@@ -39,11 +39,11 @@ from evaluation.segmentation import (
     trajectory_table,
 )
 from evaluation.surfaces import hidden_surfaces, recall, surface_coverage
-from evaluation.visibility import Visibility, holes, longest_hole, visibility_of
 from recording.errors import InputError
 from recording.motions import NOISE, Motions
 from recording.recording import Recording
 from recording.version import VERSION
+from recording.visibility import Visibility, holes, longest_hole, visibility_of
 
 Scores = dict[str, Any]
 """Numbers by name, None where there is none; nested as JSON is."""

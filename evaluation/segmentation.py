@@ -5,8 +5,8 @@ from jaxtyping import Int64
 
 from evaluation.clustering import FOUND_FROM, Contingency, assigned, contingency
 from evaluation.observations import BACKGROUND, Observations
-from evaluation.visibility import Visibility, holes
 from recording.motions import NOISE
+from recording.visibility import Visibility, holes
 
 
 def coverage(observations: Observations, visibility: Visibility) -> float | None:

@@ -6,11 +6,11 @@ import numpy as np
 from jaxtyping import Bool, Float64, Int64
 from scipy.spatial import cKDTree
 
-from evaluation.visibility import Visibility, hidden_lengths, surface_points
 from recording.frame import Frame
 from recording.motions import NOISE, Motions
 from recording.progress import tracked
 from recording.recording import Recording
+from recording.visibility import Visibility, hidden_lengths, surface_points
 
 RECALL_REACH_M = 0.25
 """A completed point this near stands for a part of the surface where recall is asked for."""

@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from evaluation.visibility import holes, longest_hole, visibility_of
 from recording.checks import nearest_name
 from recording.errors import InputError
 from recording.recording import Recording
 from recording.store import load_recording
+from recording.visibility import holes, longest_hole, visibility_of
 from simulator.simulate import prepared, simulate, write_simulation
 
 

@@ -7,10 +7,10 @@ import pytest
 from known import FRAMES, GROUND, LEFT, RIGHT, WALL, crossing, masks_only
 
 from evaluation.causes import NOT_HIDDEN, OUT_OF_VIEW, SENSOR, causes_of
-from evaluation.visibility import visibility_of
 from recording.errors import InputError
 from recording.frame import Frame
 from recording.recording import Recording, stripped
+from recording.visibility import visibility_of
 
 
 @pytest.mark.parametrize("lost", [0.0, 0.3])

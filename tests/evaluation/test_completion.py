@@ -6,9 +6,9 @@ from known import LEFT, RIGHT, crossing, perfect, with_rows, without_rows
 
 from evaluation.completion import point_errors
 from evaluation.scores import completion_by_length, evidence_of, scores
-from evaluation.visibility import visibility_of
 from recording.motions import OBSERVED, Motions
 from recording.recording import Recording
+from recording.visibility import visibility_of
 
 
 @pytest.fixture(scope="module")

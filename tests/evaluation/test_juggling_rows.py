@@ -2,7 +2,7 @@
 
 import pytest
 
-from evaluation.visibility import holes, longest_hole, visibility_of
+from recording.visibility import holes, longest_hole, visibility_of
 from simulator.scene import load_scene
 from simulator.simulate import simulate
 

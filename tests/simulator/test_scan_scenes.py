@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from evaluation.visibility import holes, longest_hole, visibility_of
 from recording.recording import Recording
 from recording.verify import verify
+from recording.visibility import holes, longest_hole, visibility_of
 from simulator.scene import load_scene
 from simulator.simulate import prepared, simulate
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from evaluation.visibility import Visibility, holes, longest_hole, visibility_of
 from recording.recording import Recording
+from recording.visibility import Visibility, holes, longest_hole, visibility_of
 from simulator.scene import load_scene
 from simulator.simulate import prepared, simulate
 from simulator.stage import walkers_centres

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from known import CAMERA, FRAMES, LEFT, RIGHT, crossing, masks_only
 
-from evaluation.visibility import (
+from recording.recording import Recording, stripped
+from recording.visibility import (
     Visibility,
     hidden_lengths,
     hidden_runs,
@@ -12,7 +13,6 @@ from evaluation.visibility import (
     longest_hole,
     visibility_of,
 )
-from recording.recording import Recording, stripped
 
 
 def visibility(seen: list[int], unoccluded: list[int] | None = None) -> Visibility:
