@@ -11,11 +11,14 @@ instead of files:
 """
 
 import json
+import os
+import re
 import sys
 import tomllib
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Annotated, Any, Literal
 
 from cyclopts import App, CycloptsError, Parameter
@@ -24,41 +27,59 @@ from rich.console import Console
 
 from algorithm.depth_image import depth_range
 from algorithm.pipeline import solve
-from algorithm.settings import Settings, changed_settings, preset_settings, settings_from_file
-from evaluation.causes import causes_of
+from algorithm.settings import Preset, Settings, changed_settings, preset_settings, settings_from_file
+from evaluation.compare import compared
+from evaluation.compare_tables import comparison_document, comparison_text, write_comparison
 from evaluation.contact_sheet import draw_contact_sheet
 from evaluation.doctor import diagnosis
+from evaluation.figures.catalogue import FIGURES, chosen_figures, draw_figures
+from evaluation.kept import Kept
+from evaluation.methods import METHODS
 from evaluation.picture import draw_overview
 from evaluation.scores import check_belongs, evaluate, scores
-from evaluation.summary import aligned_text, summary
-from evaluation.table1 import measured_rows, table_cells
+from evaluation.summary import summary
+from evaluation.table1 import PRESETS, measured_rows
+from evaluation.table1_text import require_no_tables, tables_of, text_of, write_tables
 from recording.atomic import whole_file
+from recording.causes import causes_of
 from recording.correspondence import flow_between, places_of, track
 from recording.errors import InputError
 from recording.importing import Calibration, import_images
+from recording.manifest import MANIFEST, load_manifest, recordings_of
 from recording.motions import Motions
 from recording.parquet import load_motions, save_motions
 from recording.progress import progress_shown
 from recording.recording import Recording
 from recording.store import load_recording, save_recording
-from recording.verify import verify
+from recording.verify import Report, verify
+from recording.verify_set import SetReport, verify_set
 from recording.version import VERSION
 from recording.visibility import visibility_of
+from simulator.family import family_names, load_family
+from simulator.generate import generate
+from simulator.order import Order
+from simulator.resense import resense, write_resensed
 from simulator.scene import scene_names
 from simulator.simulate import prepared, simulate, write_simulation
 
 __all__ = [
     "InputError",
     "Motions",
+    "Order",
     "Recording",
     "Settings",
     "causes_of",
     "evaluate",
     "flow_between",
+    "generate",
+    "load_family",
+    "load_manifest",
     "load_motions",
     "load_recording",
     "places_of",
     "preset_settings",
+    "recordings_of",
+    "resense",
     "save_motions",
     "save_recording",
     "simulate",
@@ -174,6 +195,70 @@ def simulate_command(
         common.say(f"simulated {place}: {simulation.scene.frames} frames, {simulation.clearance.sentence}")
 
 
+@app.command(name="generate", help_epilogue="Families: " + ", ".join(family_names()))
+def generate_command(
+    family: str,
+    *,
+    count: Annotated[int, Parameter(validator=Number(gte=1))],
+    output: Output,
+    seed: Annotated[int, Parameter(validator=Number(gte=0))] = 1,
+    size: str | None = None,
+    sensor: str | None = None,
+    workers: Annotated[int | None, Parameter(validator=Number(gte=1))] = None,
+    backend: Backend = "auto",
+    common: Writing = WRITING,
+) -> None:
+    """Make a data set of random scenes: recordings `OUTPUT/<family>-<seed>/`, and `OUTPUT/manifest.json`.
+
+    Example: `unocclude generate crowded --count 20 -o data`
+
+    The same call again keeps the recordings that are there and makes the others. Seeds 1 to 999 are for development,
+    1000 to 1999 for reporting.
+
+    Args:
+        family: Name of a shipped family, or path of a TOML file.
+        count: How many recordings, of as many seeds in a row.
+        output: Folder for the recordings.
+        seed: The first seed.
+        size: Picture size in pixels, `640x480`, or `2x` for twice the family's own.
+        sensor: Sensor preset in place of the family's own.
+        workers: Processes that make recordings, one for each core by default; the files are the same for any number.
+        backend: Ray caster: compiled (`llvm`), interpreted (`scalar`), or what works here.
+    """
+    order = Order(family=load_family(family), folder=output, sensor=sensor, size=size, overwrite=common.overwrite)
+    processes = workers or os.cpu_count() or 1
+    with common.progress():
+        done = generate(order, seeds=range(seed, seed + count), workers=processes, backend=backend)
+    if done.recordings:
+        common.say(f"generated {output}: {done.sentence}")
+    if done.refusal is not None:
+        raise InputError(done.refusal)
+
+
+@app.command(name="resense")
+def resense_command(
+    recording: Path,
+    *,
+    sensor: str,
+    output: Output,
+    seed: Annotated[int | None, Parameter(validator=Number(gte=0))] = None,
+    common: Writing = WRITING,
+) -> None:
+    """See a simulated recording with another sensor: the same truth, other depths; no picture is cast again.
+
+    Example: `unocclude resense recordings/wall --sensor tof -o recordings/wall-tof`
+
+    Args:
+        recording: The recording's folder.
+        sensor: Sensor preset: `ideal`, `kinect1`, `tof`, `structured_light` or `stereo`.
+        output: The recording to make.
+        seed: Of the sensor's noise; the recording's own by default, as if the scene were simulated with the sensor.
+    """
+    with common.progress():
+        write_resensed(load_recording(recording), sensor, output, seed=seed, overwrite=common.overwrite)
+    common.say(f"sensed {output} with {sensor}")
+
+
 @app.command(name="import")
 def import_command(
     source: Path,
@@ -284,18 +369,27 @@ def evaluate_command(
 
 
 @app.command(name="verify")
-def verify_command(recording: Path, *, common: Common = COMMON) -> None:
-    """Check a simulated recording against itself; exit status 1 where a bound is passed.
+def verify_command(
+    recording: Path,
+    *,
+    workers: Annotated[int | None, Parameter(validator=Number(gte=1))] = None,
+    common: Common = COMMON,
+) -> None:
+    """Check a simulated recording, or a whole data set, against itself; exit status 1 where a bound is passed.
 
     Example: `unocclude verify recordings/wall`
 
     Args:
-        recording: The recording's folder.
+        recording: The recording's folder, or that of a data set with its `manifest.json`.
+        workers: Processes that verify the recordings of a data set, one for each core by default.
     """
     with common.progress():
-        report = verify(load_recording(recording))
-    print(report.text)
-    if not report.passes:
+        if (recording / MANIFEST).is_file():
+            found: Report | SetReport = verify_set(recording, workers=workers or os.cpu_count() or 1)
+        else:
+            found = verify(load_recording(recording))
+    print(found.text)
+    if not found.passes:
         sys.exit(1)
 
 
@@ -335,21 +429,102 @@ def table1_command(
     *,
     scenes: Annotated[tuple[str, ...], Parameter(consume_multiple=True, negative="")] = ("all",),
     output: Annotated[Path | None, Parameter(name=["--output", "-o"])] = None,
+    preset: Preset | None = None,
+    counts_only: Annotated[bool, Parameter(negative="")] = False,
     size: str | None = None,
-    common: Common = COMMON,
+    workers: Annotated[int, Parameter(validator=Number(gte=1))] = 1,
+    common: Writing = WRITING,
 ) -> None:
-    """Print Table 1 of the paper beside ours, measured from the recordings: "paper | ours" in every cell.
+    """Print Table 1 of the paper beside ours: what the scenes hold, and what is found in them.
 
-    Example: `unocclude table1 --scenes wall house`
+    Example: `unocclude table1 --scenes wall house -o table1`
 
     Args:
         scenes: Names of scenes, or `all`.
-        output: Folder to keep the recordings in; those that it holds already are measured as they are.
+        output: Folder for `table1.csv`, `table1.md` and `table1.tex`, and to keep recordings and motions in: the next
+            call with the same folder uses them again.
+        preset: Settings to solve with; both presets, one after the other, by default.
+        counts_only: Count what the recordings hold and solve nothing.
         size: Picture size in place of the scenes' own, such as `2x`.
+        workers: Processes that cast, or that solve; with several, the times are those of scenes that share the machine.
     """
+    presets = () if counts_only else (preset,) if preset else PRESETS
+    if output is not None:
+        require_no_tables(output, overwrite=common.overwrite)
+    with common.progress(), TemporaryDirectory() as passing:
+        kept = Kept(folder=output or Path(passing), size=size, workers=workers, overwrite=common.overwrite)
+        rows = measured_rows(scenes, kept, presets)
+    if output is not None:
+        write_tables(rows, output, overwrite=common.overwrite)
+    print(text_of(tables_of(rows)))
+
+
+@app.command(name="compare", help_epilogue="Methods: " + ", ".join(METHODS))
+def compare_command(
+    *recordings: Path,
+    methods: Annotated[tuple[str, ...], Parameter(consume_multiple=True, negative="")] = tuple(METHODS),
+    motions: Annotated[tuple[str, ...], Parameter(negative="")] = (),
+    output: Output = Path("comparison"),
+    workers: Annotated[int, Parameter(validator=Number(gte=1))] = 1,
+    json_: Annotated[bool, Parameter(name="--json")] = False,
+    common: Writing = WRITING,
+) -> None:
+    """Score methods side by side: our presets, the baselines, and ours with one stage that knows the truth.
+
+    Example: `unocclude compare recordings/wall recordings/house --methods default,tracker -o comparison`
+
+    Args:
+        recordings: Folders of recordings, or of data sets with a `manifest.json`.
+        methods: Names of methods, separated by commas or blanks.
+        motions: `NAME=FOLDER`, a method from elsewhere: the folder holds `<recording>.parquet` or
+            `<recording>/motions.parquet` for every recording. May be given several times.
+        output: Folder for the tables, the plot, and every outcome: the same call again goes on where it ended, and
+            makes again what depends on something that has changed. With `--overwrite` all is made again.
+        workers: Processes at work at the same time.
+        json_: One JSON object in place of tables.
+    """
+    elsewhere = {name: Path(folder) for name, folder in map(_name_and_folder, motions)}
+    names = [name for text in methods for name in text.split(",") if name]
     with common.progress():
-        rows = measured_rows(scenes, folder=output, size=size)
-    print(aligned_text(table_cells(rows)))
+        outcomes = compared(
+            recordings, output, methods=names, elsewhere=elsewhere, workers=workers, overwrite=common.overwrite
+        )
+    write_comparison(outcomes, output)
+    print(json.dumps(comparison_document(outcomes), allow_nan=False) if json_ else comparison_text(outcomes))
+    for outcome in outcomes:
+        if outcome.failure is not None:
+            common.say(f"warning: {outcome.method} failed on {outcome.recording}: {outcome.failure}")
+
+
+@app.command(name="figure", help_epilogue="Figures: " + ", ".join(FIGURES))
+def figure_command(
+    *numbers: str,
+    output: Output,
+    preset: Preset = "default",
+    size: str | None = None,
+    frames: int | None = None,
+    workers: Annotated[int, Parameter(validator=Number(gte=1))] = 1,
+    common: Writing = WRITING,
+) -> None:
+    """Draw figures of the paper from our recordings and motions, as PNG and SVG.
+
+    Example: `unocclude figure 3 10 -o figures`
+
+    Args:
+        numbers: The paper's numbers, or `all`.
+        output: Folder for the pictures, and to keep recordings and motions in: the next call with the same folder, of
+            `table1` too, uses them again.
+        preset: Settings to solve with.
+        size: Picture size in place of the scenes' own, such as `2x`.
+        frames: Number of frames in place of the scenes' own.
+        workers: Processes that cast, or that solve.
+    """
+    if not numbers:
+        raise InputError("expected at least one figure, got none: try 'unocclude figure 3 -o figures'")
+    with common.progress():
+        kept = Kept(folder=output, size=size, frames=frames, workers=workers, overwrite=common.overwrite)
+        drawn = draw_figures(chosen_figures(numbers), kept, preset, folder=output, overwrite=common.overwrite)
+    common.say(f"drawn {', '.join(map(str, drawn))}")
 
 
 @app.command
@@ -371,6 +546,14 @@ def main(arguments: list[str] | None = None) -> None:
     except KeyboardInterrupt:
         messages.print("unocclude: interrupted; nothing half-written is left")
         sys.exit(130)
+
+
+def _name_and_folder(text: str) -> tuple[str, str]:
+    """A method from elsewhere as the command line has it."""
+    name, _, folder = text.partition("=")
+    if not re.fullmatch(r"[A-Za-z0-9][\w.-]*", name) or not folder:
+        raise InputError(f"--motions: expected NAME=FOLDER with a name of letters, digits, '_', '-', got {text!r}")
+    return name, folder
 
 
 def _key_and_value(text: str) -> tuple[str, Any]:

@@ -11,7 +11,7 @@ from recording.camera import Camera
 
 NEAREST_GREY, FARTHEST_GREY = 1.0, 255.0
 _DARKEST, _CONTRAST = 60.0, 190.0
-_CONTINUED_PX = 12
+_CONTINUED_PX = 60
 _BEFORE_M = 0.1
 
 DepthRange = tuple[float, float]
@@ -65,7 +65,7 @@ def continued_behind(
 
     Where a wall cuts a body off, the cut stands still although the body moves, and flow would follow the
     cut. So pixels of `sensed` that are no moving ones take the value of the nearest moving pixel within
-    12 pixels, if that lies behind them.
+    60 pixels, if that lies behind them.
     """
     moving = np.isfinite(depth)
     if not moving.any() or moving.all():

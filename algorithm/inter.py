@@ -95,6 +95,21 @@ def linked(
     return {pair: candidates[pair] for pair in _assigned(candidates, weight, eps6_m)}
 
 
+def joined_by_polynomials(
+    ends: Sequence[Curve], pairs: Sequence[tuple[int, int]], *, eps6_m: float, ends_frames: float
+) -> Mapping[tuple[int, int], Polynomial]:
+    """The polynomial through the ends of each pair of curves that are known to go on as one another.
+
+    It is the smoothest one as in `linked`; where none has an error below epsilon 6, that of the lowest degree.
+    """
+    found = {}
+    for i, j in pairs:
+        before, after = _ends(ends[i], ends[j], ends_frames)
+        smoothest = smoothest_polynomial(before, after, eps6_m=eps6_m)
+        found[i, j] = smoothest or fitted_polynomial(before, after, degree=LOWEST_DEGREE)
+    return found
+
+
 def seen_areas(
     trajectories: Trajectories, segment: Int[np.ndarray, "trajectory"], *, camera: Camera
 ) -> Float[np.ndarray, "segment"]:

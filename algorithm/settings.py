@@ -14,8 +14,10 @@ Share = Annotated[float, Field(ge=0, le=1)]
 Count = Annotated[int, Field(ge=1)]
 
 Preset = Literal["default", "paper"]
-FlowName = Literal["dis", "deepflow", "farneback"]
+PixelFlowName = Literal["classic_nl", "classic_nl_fast", "deepflow", "dis", "dis_refined", "farneback", "rlof", "tvl1"]
+FlowName = Literal["range", PixelFlowName]
 ImageName = Literal["grey", "shading"]
+ChainingName = Literal["pixels", "between_pixels"]
 AffinityName = Literal["product", "spread"]
 ClusteringName = Literal["eigengap", "normalised_cut"]
 AlignmentName = Literal["rigid", "translation"]
@@ -34,13 +36,17 @@ class Settings(Frozen):
 
     image: ImageName = "shading"
     """What the flow sees: `grey` = depth as 8-bit grey (paper); `shading` = the surface lit from the camera."""
-    flow: FlowName = "dis"
+    flow: FlowName = "range"
     """Optical flow between consecutive frames (paper: Classic+NL)."""
     similar_depth_m: Positive = 0.1
     """Metres: neighbours nearer than this in depth lie on the same surface (paper: epsilon of the kernel rho)."""
     fastest_m_per_s: Positive = 10.0
     """Metres a second: nothing comes nearer or goes away faster; a larger change of depth is another surface."""
 
+    chaining: ChainingName = "between_pixels"
+    """How matches become trajectories: from pixel to pixel (`pixels`, paper), or keeping the place between them."""
+    jolt_m_per_s2: Positive = 45.0
+    """Metres a second squared: a point whose motion changes more abruptly is lost (for `between_pixels`)."""
     eps1: Positive = 1.5
     """Point spacings: a match returns home within this distance (paper: epsilon 1)."""
     eps2: Annotated[float, Field(ge=0)] = 0.1
@@ -56,26 +62,26 @@ class Settings(Frozen):
     """`product` = the paper's traj_sim; `spread` = how much the distance of two trajectories changes."""
     eps3: Positive = 3.0
     """Pairs beyond it are ignored: traj_sim for `product` (paper: epsilon 3), point spacings for `spread`."""
-    eps5: Count = 2
+    eps5: Count = 6
     """Every eps5-th trajectory is clustered, the others follow their nearest neighbour (paper: epsilon 5)."""
 
     clustering: ClusteringName = "normalised_cut"
     """How the number of segments comes about: `eigengap`, or cuts while they are cheap (`normalised_cut`)."""
-    cut_below: Share = 0.01
+    cut_below: Share = 0.005
     """A segment is cut in two while the normalised cut costs less than this (for `normalised_cut`)."""
     most_segments: Count = 60
     """Segments that `eigengap` may find in one connected component."""
     eps4: Annotated[float, Field(ge=0)] = 20.0
     """Trajectories, of those that are clustered: a smaller segment is noise (paper: epsilon 4)."""
 
-    fragment_share: Share = 0.25
+    fragment_share: Share = 0.35
     """A segment with at most this share of a near one's points is a limb of it; 0 = none is (paper)."""
     fragment_gap_m: Positive = 0.5
     """Metres: a segment farther from the other is no limb of it."""
     fragment_drift_m_per_s: Positive = 1.5
     """Metres a second: a segment that leaves the other faster is no limb of it."""
 
-    drift_seconds: Annotated[float, Field(ge=0)] = 0.1
+    drift_seconds: Annotated[float, Field(ge=0)] = 0.3
     """Seconds over which a representative is drawn to the centres of mass of well seen frames; 0 = never (paper)."""
     faint_share: Share = 0.6
     """A segment's ends with a smaller share of its points near the end do not count for linking; 0 = all count."""
@@ -103,7 +109,8 @@ _PAPER: dict[str, Any] = {
     "preset": "paper",
     "remove_static": False,
     "image": "grey",
-    "flow": "deepflow",
+    "flow": "classic_nl_fast",
+    "chaining": "pixels",
     "eps1": 0.5,
     "eps2": 0.1,
     "shortest_frames": 2,

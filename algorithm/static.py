@@ -8,6 +8,12 @@ from jaxtyping import Bool, Float32
 
 _FRAMES_FOR_MEDIAN = 61
 _WOBBLE_M = 0.15
+_SHARE, _SIGMAS = 0.75, 1.1503
+"""So large a share of what is normal lies within so many standard deviations. Of rounded depths the median is 0."""
+_SPREADS = 3.0
+"""A return within so many standard deviations of its pixel's usual depth stands still ..."""
+_WIDEST_M = 0.3
+"""... but none that is farther from it than this, metres."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -16,7 +22,7 @@ class Background:
 
     depth: Float32[np.ndarray, "row column"]
     """Metres; NaN where nothing stands still."""
-    tolerance_m: float
+    tolerance_m: Float32[np.ndarray, "row column"]
     """A return nearer than this to the background belongs to it."""
 
     def wobble(self, depth: Float32[np.ndarray, "row column"]) -> float:
@@ -45,13 +51,16 @@ def background(depths: Sequence[Float32[np.ndarray, "row column"]], *, tolerance
     the returns agree with it, and if they do so over at least half of the recording's time: someone who
     passes agrees with himself for a moment only.
     """
-    rough = Background(depth=usual_depth(depths), tolerance_m=tolerance_m)
-    usual = usual_depth([depth - np.float32(rough.wobble(depth)) for depth in depths])
+    same = np.full(depths[0].shape, tolerance_m, np.float32)
+    rough = Background(depth=usual_depth(depths), tolerance_m=same)
+    level = [depth - np.float32(rough.wobble(depth)) for depth in depths]
+    usual = usual_depth(level)
+    tolerance = np.clip(_SPREADS * usual_spread(level, usual), tolerance_m, max(_WIDEST_M, tolerance_m))
     first = np.full(usual.shape, len(depths))
     last = np.full(usual.shape, -1)
     agreeing = np.zeros(usual.shape, int)
     returns = np.zeros(usual.shape, int)
-    whole = Background(depth=usual, tolerance_m=tolerance_m)
+    whole = Background(depth=usual, tolerance_m=tolerance)
     for number, depth in enumerate(depths):
         seen = np.isfinite(depth)
         agrees = seen & ~whole.moving(depth)
@@ -60,13 +69,28 @@ def background(depths: Sequence[Float32[np.ndarray, "row column"]], *, tolerance
         first = np.where(agrees, np.minimum(first, number), first)
         last = np.where(agrees, number, last)
     lasting = (last - first + 1 >= len(depths) / 2) & (agreeing >= returns / 2) & (agreeing >= 2)
-    return Background(depth=np.where(lasting, usual, np.float32(np.nan)), tolerance_m=tolerance_m)
+    return Background(depth=np.where(lasting, usual, np.float32(np.nan)), tolerance_m=tolerance)
 
 
 def usual_depth(depths: Sequence[Float32[np.ndarray, "row column"]]) -> Float32[np.ndarray, "row column"]:
     """The median of every pixel's returns over up to 61 frames spread over the recording; NaN without any."""
-    chosen = np.unique(np.linspace(0, len(depths) - 1, _FRAMES_FOR_MEDIAN).round().astype(int))
-    ordered = np.sort(np.stack([depths[number] for number in chosen]), axis=0)  # NaN goes last.
-    count = np.isfinite(ordered).sum(axis=0)
-    middle = np.maximum(count - 1, 0) // 2
-    return np.take_along_axis(ordered, middle[None], axis=0)[0]
+    return _quantile(np.stack([depths[number] for number in _spread_frames(len(depths))]), 0.5)
+
+
+def usual_spread(
+    depths: Sequence[Float32[np.ndarray, "row column"]], usual: Float32[np.ndarray, "row column"]
+) -> Float32[np.ndarray, "row column"]:
+    """The standard deviation of every pixel's returns about its usual depth, by three quarters; 0 without any."""
+    off = np.stack([np.abs(depths[number] - usual) for number in _spread_frames(len(depths))])
+    return np.nan_to_num(_quantile(off, _SHARE) / np.float32(_SIGMAS))
+
+
+def _spread_frames(count: int) -> list[int]:
+    return np.unique(np.linspace(0, count - 1, _FRAMES_FOR_MEDIAN).round().astype(int)).tolist()
+
+
+def _quantile(values: Float32[np.ndarray, "frame row column"], share: float) -> Float32[np.ndarray, "row column"]:
+    """The largest of the lower share of the values over the frames, NaN left out."""
+    ordered = np.sort(values, axis=0)  # NaN goes last.
+    place = (share * np.maximum(np.isfinite(ordered).sum(axis=0) - 1, 0)).astype(int)
+    return np.take_along_axis(ordered, place[None], axis=0)[0]

@@ -42,6 +42,19 @@ class LengthRow:
     median_m: float | None
     mean_m: float | None
     p95_m: float | None
+    centres: int
+    """Object-frames with a place of the object's motion."""
+    centre_mean_m: float | None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CentreErrors:
+    """Hidden objects whose motion says where they are: an entry an object and frame."""
+
+    hidden_frames: Int64[np.ndarray, "moment"]
+    """Length in frames of the run of hidden frames that the frame lies in."""
+    error_m: Float64[np.ndarray, "moment"]
+    """Distance of the motion's place from the object's centre, metres."""
 
 
 def point_errors(
@@ -82,28 +95,28 @@ def point_errors(
 
 def centre_errors(
     visibility: Visibility, places: dict[int, Float64[np.ndarray, "frame 3"]], motion_of: dict[int, int]
-) -> Float64[np.ndarray, "moment"]:
-    """Distance of a motion's place from its object's centre in every hidden frame, metres.
+) -> CentreErrors:
+    """Distance of a motion's place from its object's centre in every hidden frame.
 
     Hidden object-frames for which the object has no motion, or the motion no place, are left out.
     """
     if visibility.centre is None or visibility.hidden is None:
-        return np.empty(0)
-    errors = [
-        np.linalg.norm(places[motion_of[objectid]][hidden] - centre[hidden], axis=1)
-        for objectid, hidden, centre in zip(visibility.ids, visibility.hidden, visibility.centre, strict=True)
-        if motion_of.get(objectid) in places
-    ]
-    everywhere = np.concatenate([np.empty(0), *errors])
-    return everywhere[np.isfinite(everywhere)]
+        return CentreErrors(hidden_frames=np.empty(0, np.int64), error_m=np.empty(0))
+    error = np.full(visibility.hidden.shape, np.nan)
+    for number, objectid in enumerate(visibility.ids):
+        if motion_of.get(objectid) in places:
+            error[number] = np.linalg.norm(places[motion_of[objectid]] - visibility.centre[number], axis=1)
+    known = visibility.hidden & np.isfinite(error)
+    return CentreErrors(hidden_frames=hidden_lengths(visibility)[known], error_m=error[known])
 
 
-def by_hidden_length(surfaces: HiddenSurfaces, errors: PointErrors | None) -> list[LengthRow]:
+def by_hidden_length(surfaces: HiddenSurfaces, errors: PointErrors | None, centres: CentreErrors) -> list[LengthRow]:
     """Recall and errors by the length of the run of hidden frames, shortest first; lengths that occur only."""
     rows = []
     for length in np.unique(surfaces.hidden_frames).tolist():
         moments = surfaces.hidden_frames == length
         error = errors.error_m[errors.hidden_frames == length] if errors is not None else np.empty(0)
+        centre = centres.error_m[centres.hidden_frames == length]
         rows.append(
             LengthRow(
                 hidden_frames=length,
@@ -113,6 +126,8 @@ def by_hidden_length(surfaces: HiddenSurfaces, errors: PointErrors | None) -> li
                 median_m=float(np.median(error)) if len(error) else None,
                 mean_m=float(error.mean()) if len(error) else None,
                 p95_m=float(np.percentile(error, 95)) if len(error) else None,
+                centres=len(centre),
+                centre_mean_m=float(centre.mean()) if len(centre) else None,
             )
         )
     return rows

@@ -19,6 +19,7 @@ from evaluation.clustering import (
     v_measure,
 )
 from evaluation.completion import (
+    CentreErrors,
     LengthRow,
     PointErrors,
     by_hidden_length,
@@ -91,7 +92,12 @@ def check_belongs(recording: Recording, motions: Motions) -> str | None:
 
 def scores(recording: Recording, motions: Motions, visibility: Visibility | None = None) -> Scores:
     """The scores, the digest unchecked; a visibility that was worked out before saves a pass over the frames."""
-    evidence = evidence_of(recording, motions, visibility)
+    return scores_of(evidence_of(recording, motions, visibility))
+
+
+def scores_of(evidence: Evidence) -> Scores:
+    """The scores that the evidence gives."""
+    seconds, settings = evidence.motions.making.seconds, evidence.motions.making.settings
     return {
         **_content(evidence),
         "coverage": coverage(evidence.observations, evidence.visibility),
@@ -104,9 +110,9 @@ def scores(recording: Recording, motions: Motions, visibility: Visibility | None
             "precision": _if_known(evidence, link_precision(evidence.motions, evidence.observations)),
             "recall": link_recall(evidence.observations, evidence.visibility),
         },
-        "seconds": {stage: motions.making.seconds.get(stage) for stage in STAGES},
+        "seconds": {stage: seconds.get(stage) for stage in STAGES},
         "version": VERSION,
-        "preset": motions.making.settings.get("preset"),
+        "preset": settings.get("preset"),
     }
 
 
@@ -128,7 +134,9 @@ def evidence_of(recording: Recording, motions: Motions, visibility: Visibility |
 def completion_by_length(evidence: Evidence) -> list[LengthRow]:
     """Recall and errors by the number of frames that an object was hidden; empty without X-ray."""
     surfaces = hidden_surfaces(evidence.recording, evidence.motions, evidence.visibility, evidence.motion_of_object)
-    return by_hidden_length(surfaces, _point_errors(evidence)) if surfaces is not None else []
+    if surfaces is None:
+        return []
+    return by_hidden_length(surfaces, _point_errors(evidence), _centre_errors(evidence))
 
 
 def _content(evidence: Evidence) -> Scores:
@@ -205,8 +213,7 @@ def _completion(evidence: Evidence) -> Scores:
     """The scores of hidden frames; all None where nothing is hidden."""
     motion_of = evidence.motion_of_object
     surfaces = hidden_surfaces(evidence.recording, evidence.motions, evidence.visibility, motion_of)
-    places = places_of(evidence.motions, evidence.recording.metadata.frames)
-    centre = centre_errors(evidence.visibility, places, motion_of)
+    centre = _centre_errors(evidence).error_m
     points = _point_errors(evidence)
     hidden = surfaces if surfaces is not None and len(surfaces.area) else None
     return {
@@ -233,6 +240,11 @@ def _error_statistics(error_m: np.ndarray) -> Scores:
 
 def _point_errors(evidence: Evidence) -> PointErrors | None:
     return point_errors(evidence.recording, evidence.motions, evidence.observations, evidence.visibility)
+
+
+def _centre_errors(evidence: Evidence) -> CentreErrors:
+    places = places_of(evidence.motions, evidence.recording.metadata.frames)
+    return centre_errors(evidence.visibility, places, evidence.motion_of_object)
 
 
 def _if_known(evidence: Evidence, value: Any) -> Any:

@@ -42,13 +42,6 @@ def summary(scores: dict[str, Any]) -> str:
     return "\n".join(f"{name:<15} {text}" for name, text in rows)
 
 
-def aligned_text(rows: list[dict[str, str]]) -> str:
-    """The rows, whose keys are the columns, as text in aligned columns."""
-    lines = [list(rows[0]), *(list(row.values()) for row in rows)] if rows else []
-    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
-    return "\n".join("  ".join(map(str.ljust, line, widths)).rstrip() for line in lines)
-
-
 def _number(value: float | None, form: str = "") -> str:
     return _NOTHING if value is None else format(value, form)
 

@@ -1,77 +1,26 @@
-"""Table 1 of the paper beside ours, measured from recordings alone."""
+"""Table 1 of the paper beside ours: what the scenes hold, and what is found in them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
+from algorithm.settings import Preset
+from evaluation.kept import Kept, settings_of
+from evaluation.paper_rows import PAPER, PaperRow
+from evaluation.scores import Scores, scores
 from recording.checks import nearest_name
 from recording.errors import InputError
 from recording.recording import Recording
-from recording.store import load_recording
-from recording.visibility import holes, longest_hole, visibility_of
-from simulator.simulate import prepared, simulate, write_simulation
+from recording.visibility import Visibility, holes, longest_hole, visibility_of
 
-
-@dataclass(frozen=True, kw_only=True)
-class PaperRow:
-    """What the paper prints of a scene."""
-
-    test: str
-    """Its name in the paper."""
-    scene: str
-    """Our scene of it."""
-    frames: int
-    points: tuple[int, int]
-    """Returns a frame; a range for the real scans."""
-    objects: int
-    static: int
-    holes: int
-    longest: int
-    """Frames."""
-    at_least: bool = False
-    """Whether the number of holes is a lower bound ("25+")."""
-
-
-PAPER = (
-    PaperRow(
-        test="9men",
-        scene="9men",
-        frames=100,
-        points=(2000, 2000),
-        objects=9,
-        static=0,
-        holes=25,
-        longest=10,
-        at_least=True,
-    ),
-    PaperRow(test="wall", scene="wall", frames=100, points=(4800, 4800), objects=2, static=1, holes=2, longest=35),
-    PaperRow(test="house", scene="house", frames=30, points=(3500, 3500), objects=2, static=1, holes=2, longest=8),
-    PaperRow(test="forest", scene="forest", frames=110, points=(3100, 3100), objects=1, static=4, holes=4, longest=7),
-    PaperRow(test="4men", scene="4men", frames=100, points=(800, 800), objects=4, static=0, holes=11, longest=5),
-    PaperRow(
-        test="Jugg 3 ball", scene="juggler3", frames=110, points=(5700, 5700), objects=3, static=1, holes=5, longest=5
-    ),
-    PaperRow(
-        test="Jugg 5 ball", scene="juggler5", frames=110, points=(7000, 7000), objects=5, static=1, holes=7, longest=12
-    ),
-    PaperRow(
-        test="real scan 1", scene="scan1", frames=16, points=(3000, 8000), objects=2, static=0, holes=1, longest=3
-    ),
-    PaperRow(
-        test="real scan 2", scene="scan2", frames=22, points=(2300, 5000), objects=3, static=0, holes=1, longest=4
-    ),
-    PaperRow(
-        test="real scan 3", scene="scan3", frames=20, points=(2300, 6500), objects=3, static=0, holes=2, longest=4
-    ),
-)
-"""The ten rows. The paper prints 4 objects for its five juggled balls: 5 here."""
+PRESETS: tuple[Preset, ...] = ("paper", "default")
+"""What the scenes are solved with."""
 POINTS_TOLERANCE = 0.15
 LONGEST_TOLERANCE = 2
 
 
 @dataclass(frozen=True, kw_only=True)
 class OwnRow:
-    """The same of a recording."""
+    """What Table 1 counts of a scene, of our recording."""
 
     frames: int
     points: float
@@ -85,33 +34,47 @@ class OwnRow:
     """Frames; 0 without a hole."""
 
 
-def measured_rows(
-    scenes: Sequence[str], *, folder: Path | None = None, size: str | None = None
-) -> list[tuple[PaperRow, OwnRow]]:
-    """The paper's rows of the scenes (`all` for every one), each with ours.
+@dataclass(frozen=True, kw_only=True)
+class Result:
+    """What was found in a scene under a preset."""
 
-    With a `folder` the recordings are kept there, and those that it holds already are measured as they are.
+    preset: Preset
+    epsilons: tuple[float, ...]
+    """Epsilon 1 to 5, as used."""
+    scores: Scores | None
+    """As `unocclude evaluate` has them; None where solving failed."""
+    failure: str | None = None
+    """Why solving failed."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row:
+    """A scene: the paper's row, and ours."""
+
+    paper: PaperRow
+    own: OwnRow
+    results: tuple[Result, ...] = ()
+    """One a preset."""
+
+
+def measured_rows(scenes: Sequence[str], kept: Kept, presets: Sequence[Preset] = ()) -> list[Row]:
+    """The rows of the scenes (`all` for every one), with the results of the presets.
+
+    Recordings and motions are those of the folder, as far as it holds them. A scene that cannot be solved
+    has its failure in its row; the others go on.
     """
     known = {row.scene: row for row in PAPER}
     unknown = next((name for name in scenes if name not in (*known, "all")), None)
     if unknown is not None:
         raise InputError(f"--scenes: unknown scene {unknown!r}, {nearest_name(unknown, known)}")
-    names = known if "all" in scenes else scenes
-    return [(known[name], own_row(_recorded(name, folder, size))) for name in names]
+    names = list(known) if "all" in scenes else list(dict.fromkeys(scenes))
+    failures = kept.solve_all([(name, preset) for name in names for preset in presets])
+    return [_row(known[name], kept, presets, failures) for name in names]
 
 
-def _recorded(scene: str, folder: Path | None, size: str | None) -> Recording:
-    """The recording of a scene, from the folder if there is one."""
-    if folder is None:
-        return simulate(scene, size=size)
-    if not (folder / scene).exists():
-        write_simulation(prepared(scene, size=size), folder / scene)
-    return load_recording(folder / scene)
-
-
-def own_row(recording: Recording) -> OwnRow:
+def own_row(recording: Recording, visibility: Visibility | None = None) -> OwnRow:
     """What Table 1 counts, from a recording that knows its objects."""
-    visibility = visibility_of(recording)
+    visibility = visibility or visibility_of(recording)
     objects = recording.metadata.objects or ()
     return OwnRow(
         frames=recording.metadata.frames,
@@ -148,23 +111,20 @@ def misses(paper: PaperRow, own: OwnRow) -> list[str]:
     return [name for name, missed in wrong.items() if missed]
 
 
-def table_cells(rows: Sequence[tuple[PaperRow, OwnRow]]) -> list[dict[str, str]]:
-    """The table as text: in each cell the paper's number and ours."""
-    return [_cells(paper, own) for paper, own in rows]
-
-
-def _cells(paper: PaperRow, own: OwnRow) -> dict[str, str]:
-    low, high = paper.points
-    points = f"{low}" if low == high else f"{low}-{high}"
-    more = "+" if paper.at_least else ""
-    return {
-        "test": paper.test,
-        "scene": paper.scene,
-        "Fr": f"{paper.frames} | {own.frames}",
-        "Pts": f"{points} | {own.points:.0f} ({100 * points_deviation(paper, own):+.0f} %)",
-        "Obj": f"{paper.objects} | {own.objects}",
-        "Stat": f"{paper.static} | {own.static}",
-        "Occ": f"{paper.holes}{more} | {own.holes}",
-        "Max Occ": f"{paper.longest} | {own.longest}",
-        "missed": ", ".join(misses(paper, own)) or "-",
-    }
+def _row(paper: PaperRow, kept: Kept, presets: Sequence[Preset], failures: dict[tuple[str, Preset], str]) -> Row:
+    recording = kept.recording(paper.scene)
+    visibility = visibility_of(recording)
+    results = []
+    for preset in presets:
+        failure = failures.get((paper.scene, preset))
+        motions = kept.motions(paper.scene, preset) if failure is None else None
+        settings = settings_of(recording, preset)
+        results.append(
+            Result(
+                preset=preset,
+                epsilons=tuple(float(getattr(settings, f"eps{number}")) for number in range(1, 6)),
+                scores=scores(recording, motions, visibility) if motions is not None else None,
+                failure=failure,
+            )
+        )
+    return Row(paper=paper, own=own_row(recording, visibility), results=tuple(results))

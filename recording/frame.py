@@ -1,6 +1,7 @@
 """One frame of a recording: what the sensor saw and, where it is known, what really stood there."""
 
 from dataclasses import dataclass
+from enum import IntEnum
 
 import numpy as np
 from jaxtyping import Bool, Float32, UInt32
@@ -36,7 +37,7 @@ class Frame:
     clean_depth: Float32[np.ndarray, "row column"] | None = None
     """The depth before the sensor, metres; NaN = nothing there."""
     reason: UInt32[np.ndarray, "row column"] | None = None
-    """Why a return is missing or mixed (`recording.frame.REASONS`); 0 = it is as it should be."""
+    """Why a return is missing or mixed (`Reason`); 0 = it is as it should be."""
 
     @property
     def seen(self) -> Bool[np.ndarray, "row column"]:
@@ -44,5 +45,26 @@ class Frame:
         return np.isfinite(self.depth)
 
 
-REASONS = {0: "return", 1: "nothing there", 2: "out of range"}
+class Reason(IntEnum):
+    """The numbers of `Frame.reason`."""
+
+    RETURN = 0
+    """The return is as it should be."""
+    NOTHING_THERE = 1
+    """The pixel's ray meets nothing."""
+    OUT_OF_RANGE = 2
+    """Its surface is nearer or farther than the sensor measures."""
+    SHADOW = 3
+    """Something keeps the projector's light from the point, or the second camera's sight."""
+    EDGE = 4
+    """Too much of what the sensor looks at there is another surface."""
+    GRAZING = 5
+    """The surface is too steep."""
+    NO_SIGNAL = 6
+    """Too little light comes back, as in the corners, or a hole for no reason that is known."""
+    MIXED = 7
+    """There is a return, but another surface has a part in it."""
+
+
+REASONS = {int(reason): reason.name.lower().replace("_", " ") for reason in Reason}
 """What the numbers of `Frame.reason` mean."""

@@ -7,6 +7,7 @@ from pydantic import Field, PositiveInt, field_validator, model_validator
 
 from recording.camera import PIXEL_CENTRE, Camera
 from recording.checks import Frozen
+from recording.occlusion import Occlusion
 
 Positive = Annotated[float, Field(gt=0)]
 Row = tuple[float, float, float, float]
@@ -81,6 +82,8 @@ class Metadata(Frozen):
     scene: dict[str, Any] | None = None
     """The whole scene, resolved."""
     scene_digest: str | None = None
+    occlusion: Occlusion | None = None
+    """How much is hidden, for how long and by what."""
     made_by: str | None = None
 
     @model_validator(mode="after")

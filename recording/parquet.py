@@ -8,8 +8,10 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
+from pydantic import Field, model_validator
 
 from recording.atomic import whole_file
+from recording.checks import Frozen, validated
 from recording.errors import InputError
 from recording.motions import NOISE, SOURCES, Link, Making, Motions, Representative
 
@@ -22,6 +24,49 @@ _KINDS = {
     "motion": pa.int32(),
     "confidence": pa.float32(),
 }
+
+
+class _StoredRepresentative(Frozen):
+    motion: int
+    frame: tuple[int, ...]
+    x: tuple[float, ...]
+    y: tuple[float, ...]
+    z: tuple[float, ...]
+    observed: tuple[bool, ...]
+
+    @model_validator(mode="after")
+    def _of_one_length(self) -> "_StoredRepresentative":
+        lengths = {len(self.frame), len(self.x), len(self.y), len(self.z), len(self.observed)}
+        if len(lengths) > 1 or len(set(self.frame)) < len(self.frame):
+            raise ValueError("expected every frame once, with x, y, z and observed of each")
+        return self
+
+    @property
+    def representative(self) -> Representative:
+        return Representative(
+            motion=self.motion,
+            frame=np.array(self.frame, np.int32),
+            position=np.array([self.x, self.y, self.z], np.float64).T.reshape(-1, 3),
+            observed=np.array(self.observed, bool),
+        )
+
+
+class _StoredLink(Frozen):
+    before: int
+    after: int
+    confidence: float
+
+
+class _Belongings(Frozen):
+    """The schema's metadata."""
+
+    settings: dict[str, Any] = Field(default_factory=dict)
+    recording_digest: str | None = None
+    version: str | None = None
+    seconds: dict[str, float] = Field(default_factory=dict)
+    representatives: tuple[_StoredRepresentative, ...] = ()
+    links: tuple[_StoredLink, ...] = ()
+    events: tuple[dict[str, Any], ...] = ()
 
 
 def save_motions(motions: Motions, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
@@ -131,24 +176,21 @@ def _belongings(motions: Motions) -> dict[str, Any]:
 
 
 def _read_belongings(place: Path, metadata: dict[bytes, bytes]) -> dict[str, Any]:
-    known = ("settings", "recording_digest", "version", "seconds", "representatives", "links", "events")
+    """What the schema's metadata says beside the rows; keys that are not ours are somebody else's."""
+    known = _Belongings.model_fields
     try:
         found = {key: json.loads(metadata[key.encode()]) for key in known if key.encode() in metadata}
-        making = {key: found[key] for key in known[:4] if key in found}
-        return {
-            "making": Making(**making),
-            "representatives": tuple(_representative(entry) for entry in found.get("representatives", ())),
-            "links": tuple(Link(**link) for link in found.get("links", ())),
-            "events": tuple(found.get("events", ())),
-        }
-    except (ValueError, TypeError, KeyError) as error:
+    except ValueError as error:
         raise InputError(f"{place}: the schema's metadata is damaged: {_line(error)}: solve again") from None
-
-
-def _representative(entry: dict[str, Any]) -> Representative:
-    return Representative(
-        motion=int(entry["motion"]),
-        frame=np.array(entry["frame"], np.int32),
-        position=np.array([entry[axis] for axis in "xyz"], np.float64).T.reshape(-1, 3),
-        observed=np.array(entry["observed"], bool),
-    )
+    read = validated(_Belongings, found, source=f"{place}: the schema's metadata is damaged")
+    return {
+        "making": Making(
+            settings=read.settings,
+            recording_digest=read.recording_digest,
+            version=read.version,
+            seconds=read.seconds,
+        ),
+        "representatives": tuple(entry.representative for entry in read.representatives),
+        "links": tuple(Link(**link.model_dump()) for link in read.links),
+        "events": read.events,
+    }

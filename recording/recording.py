@@ -46,11 +46,26 @@ class Recording:
 
         A copy that was stripped of its truth has the same digest.
         """
-        known = self.metadata.model_dump(mode="json", include={"fps", "width", "height", "camera"})
-        content = hashlib.sha256(json.dumps(known, sort_keys=True).encode())
+        digest = DepthDigest(self.metadata)
         for frame in self.frames:
-            content.update(stored_depth(frame.depth).tobytes())
-        return content.hexdigest()
+            digest.add(frame)
+        return digest.hexdigest()
+
+
+class DepthDigest:
+    """The digest of a recording while its frames are being made, in their order."""
+
+    def __init__(self, metadata: Metadata) -> None:
+        known = metadata.model_dump(mode="json", include={"fps", "width", "height", "camera"})
+        self._content = hashlib.sha256(json.dumps(known, sort_keys=True).encode())
+
+    def add(self, frame: Frame) -> None:
+        """Take the next frame's depth in."""
+        self._content.update(stored_depth(frame.depth).tobytes())
+
+    def hexdigest(self) -> str:
+        """The digest of all that was added."""
+        return self._content.hexdigest()
 
 
 def stripped(recording: Recording) -> Recording:

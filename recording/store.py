@@ -31,16 +31,15 @@ def write_recording(
     overwrite: bool = False,
 ) -> None:
     """Write a recording while its frames are being made; the folder appears when all of it is there."""
-    with new_recording(folder, metadata=metadata, truth=truth, overwrite=overwrite) as partial:
+    with new_recording(folder, truth=truth, overwrite=overwrite) as partial:
         for number, (frame, xray) in enumerate(frames):
             write_picture(partial, number, frame, xray, metadata=metadata)
+        write_metadata(partial, metadata)
 
 
 @contextmanager
-def new_recording(
-    folder: Path, *, metadata: Metadata, truth: Truth | None = None, overwrite: bool = False
-) -> Iterator[Path]:
-    """A folder to fill by `write_picture`, in any order and by any process; a recording when it is full.
+def new_recording(folder: Path, *, truth: Truth | None = None, overwrite: bool = False) -> Iterator[Path]:
+    """A folder to fill by `write_picture`, in any order and by any process, and by `write_metadata` at last.
 
     It becomes `folder` when the block ends well, and vanishes when it does not.
     """
@@ -49,13 +48,10 @@ def new_recording(
     with whole_folder(folder, overwrite=overwrite) as partial:
         (partial / "frames").mkdir()
         yield partial
-        count = sum(1 for _ in (partial / "frames").iterdir())
-        if count != metadata.frames:
-            raise InputError(f"{folder}: expected {metadata.frames} frames, got {count}")
+        if not (partial / "recording.json").is_file():
+            raise ValueError(f"{folder}: expected metadata before the end of the block")
         if truth is not None:
             _write_truth(partial / "truth.npz", truth)
-        text = metadata.model_dump_json(indent=2, exclude_none=True)
-        (partial / "recording.json").write_text(text + "\n", encoding="utf-8")
 
 
 def write_picture(partial: Path, number: int, frame: Frame, xray: XRay | None, *, metadata: Metadata) -> None:
@@ -65,6 +61,15 @@ def write_picture(partial: Path, number: int, frame: Frame, xray: XRay | None, *
     if xray:  # OpenEXR has no file without channels.
         (partial / "xray").mkdir(exist_ok=True)
         write_xray(partial / "xray" / frame_name(number), xray, shape=(camera.height, camera.width))
+
+
+def write_metadata(partial: Path, metadata: Metadata) -> None:
+    """Write `recording.json` into the folder of a new recording that has all its frames."""
+    count = sum(1 for _ in (partial / "frames").iterdir())
+    if count != metadata.frames:
+        raise InputError(f"expected {metadata.frames} frames, got {count}")
+    text = metadata.model_dump_json(indent=2, exclude_none=True)
+    (partial / "recording.json").write_text(text + "\n", encoding="utf-8")
 
 
 def save_recording(recording: Recording, folder: str | os.PathLike[str], *, overwrite: bool = False) -> None:

@@ -93,10 +93,15 @@ def visibility_of(recording: Recording) -> Visibility:
 def hidden_runs(visibility: Visibility) -> list[HiddenRun]:
     """All runs of hidden frames, by object, then frame; none where there is no X-ray."""
     hidden, in_view = visibility.hidden, visibility.in_view
-    if hidden is None or in_view is None:
-        return []
+    return [] if hidden is None or in_view is None else runs_of(visibility.ids, hidden=hidden, in_view=in_view)
+
+
+def runs_of(
+    ids: tuple[int, ...], *, hidden: Bool[np.ndarray, "object frame"], in_view: Bool[np.ndarray, "object frame"]
+) -> list[HiddenRun]:
+    """The maximal runs of frames in which an object is hidden, by object, then frame."""
     runs = []
-    for objectid, dark, present in zip(visibility.ids, hidden, in_view, strict=True):
+    for objectid, dark, present in zip(ids, hidden, in_view, strict=True):
         clear = np.concatenate([[False], present & ~dark, [False]])  # Beyond the recording nothing is seen.
         edges = np.flatnonzero(np.diff(np.concatenate([[0], dark, [0]])))
         runs += [
@@ -134,6 +139,14 @@ def surface_points(camera: Camera, depth: Float[np.ndarray, "row column"]) -> Fl
     return camera.world_from_pixel(column_row, depth[row, column].astype(np.float64))
 
 
+def seen_pixels(frame: Frame) -> dict[int, int]:
+    """The number of seen pixels by object id; empty for a frame without labels."""
+    if frame.labels is None:
+        return {}
+    ids, counts = np.unique(frame.labels.objectid[frame.seen], return_counts=True)
+    return dict(zip(ids.tolist(), counts.tolist(), strict=True))
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Glance:
     """One frame, by object id."""
@@ -147,7 +160,7 @@ class _Glance:
 
 def _glance(recording: Recording, number: int) -> _Glance:
     frame = recording.frames[number]
-    seen = _seen_pixels(frame)
+    seen = seen_pixels(frame)
     ground = [entry.id for entry in recording.metadata.objects or () if entry.kind == GROUND]
     xray = recording.xray[number] if recording.xray is not None else {}
     points = {objectid: surface_points(recording.camera, depth) for objectid, depth in xray.items()}
@@ -158,14 +171,6 @@ def _glance(recording: Recording, number: int) -> _Glance:
         unoccluded={objectid: len(surface) for objectid, surface in points.items()},
         centre={objectid: surface.mean(axis=0) for objectid, surface in points.items() if len(surface)},
     )
-
-
-def _seen_pixels(frame: Frame) -> dict[int, int]:
-    """The number of seen pixels by object id; empty for a frame without labels."""
-    if frame.labels is None:
-        return {}
-    ids, counts = np.unique(frame.labels.objectid[frame.seen], return_counts=True)
-    return dict(zip(ids.tolist(), counts.tolist(), strict=True))
 
 
 def _occurring(seen: Iterable[dict[int, int]]) -> tuple[int, ...]:

@@ -7,10 +7,8 @@ from itertools import combinations, product
 import numpy as np
 from jaxtyping import Bool, Float
 
+from recording.crowd import HEADROOM_M
 from simulator.things import Obstacle
-
-HEADROOM_M = 2.1
-"""People pass under what hangs higher."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -23,6 +23,9 @@ _STANCE = 0.62
 _UNDER_HIP = 0.42
 """Share of the stance after which the hip is above the footprint's ankle."""
 _CALM_SECONDS = 0.12
+_STEADY_SECONDS = 0.6
+_STEADIED_BELOW = 0.4
+"""Metres a second below which a direction is taken over a longer time: who sways on the spot does not spin."""
 _EASE_SECONDS = 0.2
 _CLOSING_SECONDS = 1.3
 _CLOSING_SPEED = 0.6
@@ -93,7 +96,7 @@ def planned_walk(path: Path, *, thigh_height: float, phase: float, begin: float,
     calm = _CALM_SECONDS * RATE
     velocity = gaussian_filter1d(np.gradient(place, 1 / RATE, axis=0), calm, axis=0, mode="nearest")
     speed = np.linalg.norm(velocity, axis=1)
-    heading = _headings(velocity, speed)
+    heading = _headings(*_steadied(velocity, speed))
     speed = speed + _pace_on_the_spot(speed, heading)
     frequency = np.sqrt(speed / thigh_height) / STRIDE_FACTOR  # Speed over stride length.
     cycles = np.cumsum(frequency) / RATE
@@ -162,6 +165,16 @@ def _pitch(stance: Float[np.ndarray, "moment"], swing: Float[np.ndarray, "moment
     recover = heel_up * np.clip(1 - swing / 0.65, 0.0, 1.0) ** 2
     reach = np.clip((swing - 0.45) / 0.55, 0.0, 1.0)
     return np.where(swing > 0, recover - toes_up * reach**2 * (3 - 2 * reach), strike + leave)
+
+
+def _steadied(
+    velocity: Float[np.ndarray, "moment 2"], speed: Float[np.ndarray, "moment"]
+) -> tuple[Float[np.ndarray, "moment 2"], Float[np.ndarray, "moment"]]:
+    """The velocity to face along, and its size: the slower somebody is, the more that of a longer time."""
+    over_long = gaussian_filter1d(velocity, _STEADY_SECONDS * RATE, axis=0, mode="nearest")
+    quick = np.clip(speed / _STEADIED_BELOW, 0.0, 1.0)[:, None]
+    steady = over_long + quick**2 * (3 - 2 * quick) * (velocity - over_long)
+    return steady, np.linalg.norm(steady, axis=1)
 
 
 def _headings(velocity: np.ndarray, speed: np.ndarray) -> Float[np.ndarray, "moment"]:

@@ -10,7 +10,7 @@ from pydantic import Field
 from recording.checks import Frozen, validated
 from recording.errors import InputError
 from simulator.bvh import Clip, read_bvh
-from simulator.trajectory_file import file_inside
+from simulator.trajectory_rows import file_inside
 
 
 class Motion(Frozen):

@@ -80,7 +80,8 @@ def _timed(places: Float[np.ndarray, "waypoint 2"], times: Float[np.ndarray, "wa
     """The path that passes each way-point at its time; equal way-points in turn are a stop."""
     if (np.diff(times) <= 0).any():
         raise InputError("expected times that grow from way-point to way-point")
-    sampled = np.unique(np.concatenate([np.arange(times[0], times[-1], 1 / 120), times]))
+    between = np.arange(times[0], times[-1], 1 / 120)  # Rounding can take the last one past the end.
+    sampled = np.unique(np.concatenate([between[between < times[-1]], times]))
     rests = np.flatnonzero((np.diff(places, axis=0) == 0).all(axis=1))
     ends = np.unique([0, len(places) - 1, *rests, *(rests + 1)])
     curve = np.empty((len(sampled), 2))

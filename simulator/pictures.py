@@ -10,16 +10,14 @@ from dataclasses import dataclass, field, fields, replace
 import numpy as np
 
 from recording.camera import Camera
-from recording.frame import Frame, Labels
+from recording.frame import Frame, Labels, Reason
 from recording.truth import MeshSequence
 from recording.xray import Cutout, CutoutXRay
 from simulator.backend import Backend
 from simulator.raycast import Hits, RayCaster
 from simulator.sensor import Ideal, SensorModel, sensed_frame
+from simulator.view import View
 from simulator.window import Window
-
-NOTHING_THERE = 1
-"""The reason of a pixel whose ray meets nothing (`recording.frame.REASONS`)."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -71,7 +69,8 @@ def pictures(stage: Stage, backend: Backend) -> Iterator[tuple[Frame, CutoutXRay
             if objectid in stage.moving
         }
         exact, place = _exact_frame(nearest), stage.first + number * stage.step
-        yield sensed_frame(exact, stage.camera, stage.sensor, number=place), CutoutXRay(xray, shape)
+        view = View(camera=stage.camera, meshes={**stage.still, **changing}, frame=number)
+        yield sensed_frame(exact, view, stage.sensor, number=place), CutoutXRay(xray, shape)
 
 
 def _nearest(background: Hits, layers: list[tuple[Window, Hits]]) -> Hits:
@@ -91,5 +90,5 @@ def _exact_frame(hits: Hits) -> Frame:
         depth=hits.depth,
         labels=Labels(objectid=hits.objectid, face=hits.face, u=hits.u, v=hits.v),
         clean_depth=hits.depth,
-        reason=np.where(hits.objectid > 0, np.uint32(0), np.uint32(NOTHING_THERE)),
+        reason=np.where(hits.objectid > 0, np.uint32(Reason.RETURN), np.uint32(Reason.NOTHING_THERE)),
     )

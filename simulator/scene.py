@@ -6,7 +6,7 @@ Lengths are metres, times seconds, speeds metres a second; what is in degrees sa
 
 from importlib.resources import files
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import Field, PositiveInt, model_validator
@@ -14,8 +14,11 @@ from pydantic import Field, PositiveInt, model_validator
 from recording.camera import Camera, looking_at
 from recording.checks import Frozen, nearest_name, toml_document, validated
 from recording.errors import InputError
+from simulator.casting import Surroundings
 from simulator.juggling_scene import Juggler
 from simulator.motion_file import with_motion_files
+from simulator.occlusion import OcclusionWish
+from simulator.recorded_crowd import RecordedCrowd, recorded_people
 from simulator.sensor import Ideal, Sensor
 from simulator.things import Ball, Obstacle, Person, Point, Positive
 from simulator.trajectory_file import with_recorded_walks
@@ -107,6 +110,8 @@ class Scene(Frozen):
     paper: PaperSettings | None = None
     stress_test: bool = False
     """Whether people may come nearer to one another and to obstacles than `vary` says, as bodies never do."""
+    occlusion: OcclusionWish | None = Field(default=None, exclude_if=lambda wish: wish is None)
+    """What a random family wanted of the scene's holes; others are written as if there were no such key."""
 
     @model_validator(mode="after")
     def _something_named_once(self) -> "Scene":
@@ -119,6 +124,16 @@ class Scene(Frozen):
         if twice is not None:
             raise ValueError(f"expected every name once, but two are called {twice!r}")
         return self
+
+
+class _Around(Frozen):
+    """What of a scene its crowd has to suit, as in `Scene`."""
+
+    frames: PositiveInt
+    fps: Positive
+    camera: CameraSpot
+    obstacles: tuple[Obstacle, ...] = ()
+    vary: Vary = Vary()
 
 
 def scene_names() -> list[str]:
@@ -136,4 +151,25 @@ def load_scene(name_or_path: str | Path) -> Scene:
     else:
         raise InputError(f"unknown scene {text!r}: {nearest_name(text, scene_names())} (or the path of a .toml file)")
     document = with_motion_files(with_recorded_walks(toml_document(place), place=place), place=place)
+    document = _with_crowd(document, place)
     return validated(Scene, document, source=str(place))
+
+
+def _with_crowd(document: dict[str, Any], place: Path) -> dict[str, Any]:
+    """The scene's document with people in place of its recorded `crowd`, if it has one: it stands for itself."""
+    if "crowd" not in document:
+        return document
+    if "people" in document:
+        raise InputError(f"{place}: crowd: expected it in place of 'people', got both: keep one")
+    given = {key: document[key] for key in _Around.model_fields if key in document}
+    stage = validated(_Around, given, source=str(place))
+    around = Surroundings(
+        camera=stage.camera.as_camera(),
+        seconds=(stage.frames - 1) / stage.fps,
+        obstacles=stage.obstacles,
+        people_m=stage.vary.clearance_m,
+        obstacles_m=stage.vary.obstacle_clearance_m,
+    )
+    crowd = validated(RecordedCrowd, document["crowd"], source=f"{place}: crowd")
+    rest = {key: value for key, value in document.items() if key != "crowd"}
+    return rest | {"people": recorded_people(crowd, place.parent, around)}

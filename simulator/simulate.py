@@ -3,18 +3,21 @@
 import hashlib
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
-from recording.checks import validated
+from recording.achieved import achieved_occlusion
+from recording.causes import Tally, tally_of
+from recording.checks import finite, validated
 from recording.errors import InputError
 from recording.frame import Frame
 from recording.metadata import Metadata, metadata_of
+from recording.occlusion import Nearness, Occlusion
 from recording.progress import tracked
 from recording.recording import Recording
-from recording.store import new_recording
+from recording.store import new_recording, write_metadata
 from recording.truth import Truth
 from recording.version import VERSION
 from recording.xray import XRay
@@ -23,9 +26,9 @@ from simulator.clearance import Clearance, smallest_clearance
 from simulator.pictures import Stage, pictures
 from simulator.scene import Scene, load_scene
 from simulator.sensor import on_another_day
+from simulator.shares import written_pictures
 from simulator.stage import Actor, actors, walkers_centres
 from simulator.variation import varied
-from simulator.workers import written_pictures
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -35,6 +38,7 @@ class Simulation:
     scene: Scene
     """Resolved: after variation, at the size and length asked for."""
     metadata: Metadata
+    """All that is known before the pictures are."""
     cast: tuple[Actor, ...]
     clearance: Clearance
     """How near people come to one another and to obstacles in these frames."""
@@ -60,6 +64,15 @@ class Simulation:
         """Each frame with its X-ray twin, one after the other, none kept."""
         return tracked(pictures(self.stage, backend), f"simulating {self.scene.name}", total=self.scene.frames)
 
+    def described(self, tallies: Sequence[Tally]) -> Metadata:
+        """The metadata with the occlusion that the frames, whose tallies these are in their order, have achieved."""
+        people, obstacles = (round(value, 6) for value in (self.clearance.people_m, self.clearance.obstacles_m))
+        nearness = Nearness(people=finite(people), obstacles=finite(obstacles))
+        achieved = achieved_occlusion(tallies, self.metadata, clearance_m=nearness)
+        wish = self.scene.occlusion
+        wanted = None if wish is None else wish.model_dump(mode="json", exclude_none=True)
+        return self.metadata.model_copy(update={"occlusion": Occlusion(wanted=wanted, achieved=achieved)})
+
 
 def prepared(
     scene: str | Path | Scene,
@@ -77,8 +90,13 @@ def prepared(
     """
     given = scene if isinstance(scene, Scene) else load_scene(scene)
     pixels = picture_size(size, given) if isinstance(size, str) else size
-    changed = _changed(varied(given, seed), size=pixels, frames=frames, sensor=sensor)
-    resolved = changed.model_copy(update={"sensor": on_another_day(changed.sensor, seed)})
+    changed = changed_scene(varied(given, seed), size=pixels, frames=frames, sensor=sensor)
+    return made_ready(changed, seed=seed)
+
+
+def made_ready(scene: Scene, *, seed: int) -> Simulation:
+    """The scene as it is, ready to be cast: of the seed there is only the sensor's noise, and its number."""
+    resolved = scene.model_copy(update={"sensor": on_another_day(scene.sensor, seed)})
     cast = actors(resolved)
     document = resolved.model_dump(mode="json")
     metadata = metadata_of(
@@ -90,7 +108,7 @@ def prepared(
         seed=seed,
         objects=tuple(actor.record for actor in cast),
         scene=document,
-        scene_digest=_digest(document),
+        scene_digest=digest_of(document),
         made_by=f"unocclude {VERSION}",
     )
     clearance = smallest_clearance(walkers_centres(resolved), resolved.obstacles)
@@ -110,8 +128,9 @@ def simulate(
     """The recording of a scene (a name, a TOML file or a `Scene`), in memory."""
     simulation = prepared(scene, seed=seed, size=size, frames=frames, sensor=sensor)
     pictures = list(simulation.pictures(find_backend(backend)))
+    tallies = [tally_of(frame, xray, simulation.metadata) for frame, xray in pictures]
     return Recording(
-        metadata=simulation.metadata,
+        metadata=simulation.described(tallies),
         frames=tuple(frame for frame, _ in pictures),
         truth=simulation.truth,
         xray=tuple(xray for _, xray in pictures),
@@ -130,16 +149,15 @@ def write_simulation(
 
     Workers are processes; their number changes no byte. More than there are cores make nothing faster.
     """
-    if workers < 1:
-        raise InputError(f"expected at least one worker, got {workers}")
     scene, metadata = simulation.scene, simulation.metadata
-    with new_recording(folder, metadata=metadata, truth=simulation.truth, overwrite=overwrite) as partial:
+    with new_recording(folder, truth=simulation.truth, overwrite=overwrite) as partial:
         written = written_pictures(
             simulation.stage, partial, metadata=metadata, backend=find_backend(backend), workers=workers
         )
         with closing(written):
-            for _ in tracked(written, f"simulating {scene.name}", total=scene.frames):
-                pass
+            found = list(tracked(written, f"simulating {scene.name}", total=scene.frames))
+        tallies = [each.tally for each in sorted(found, key=lambda each: each.number)]
+        write_metadata(partial, simulation.described(tallies))
 
 
 def picture_size(text: str, scene: Scene) -> tuple[int, int]:
@@ -162,7 +180,7 @@ def _require_room(scene: Scene, clearance: Clearance) -> None:
         )
 
 
-def _changed(scene: Scene, *, size: tuple[int, int] | None, frames: int | None, sensor: str | None) -> Scene:
+def changed_scene(scene: Scene, *, size: tuple[int, int] | None, frames: int | None, sensor: str | None) -> Scene:
     """The scene with what was asked for in place of what it says, held against the schema again."""
     document = scene.model_dump() | {"people": scene.people}  # As they are: a dump forgets where motion files lie.
     if size is not None:
@@ -174,7 +192,7 @@ def _changed(scene: Scene, *, size: tuple[int, int] | None, frames: int | None, 
     return validated(Scene, document, source=f"scene {scene.name!r}")
 
 
-def _digest(document: dict[str, object]) -> str:
+def digest_of(document: dict[str, object]) -> str:
     """SHA-256 of the document as canonical JSON: sorted keys, no spaces."""
     canonical = json.dumps(document, sort_keys=True, separators=(",", ":"), allow_nan=False)
     return hashlib.sha256(canonical.encode()).hexdigest()

@@ -87,6 +87,18 @@ def test_results_are_not_overwritten_unless_asked_for(solved: Path, capsys: pyte
     assert (solved / "motions.parquet").read_bytes() == before
 
 
+def test_methods_are_compared_side_by_side(solved: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "small.parquet").write_bytes((solved / "motions.parquet").read_bytes())
+    arguments = (solved, "--methods", "tracker", "gap_closing", "--motions", f"mine={tmp_path / 'mine'}")
+    assert run("compare", *arguments, "-o", tmp_path / "out") == 0
+    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()[3:6]] == ["tracker", "gap_closing", "mine"]
+    assert run("compare", *arguments, "-o", tmp_path / "out", "--json") == 0
+    document = json.loads(capsys.readouterr().out)
+    assert list(document["groups"]["small"]) == ["tracker", "gap_closing", "mine"]
+    assert document["failures"] == []
+
+
 def test_pictures_are_drawn(solved: Path, tmp_path: Path) -> None:
     for command, name in (("draw", "overview.png"), ("draw", "overview.svg"), ("contact-sheet", "sheet.png")):
         assert run(command, solved, "-o", tmp_path / name, "--quiet") == 0
@@ -128,8 +140,17 @@ WRONG = {
     "no size": ("simulate", "wall", "-o", "{empty}", "--size", "big"),
     "no workers": ("simulate", "wall", "-o", "{empty}", "--workers", "0"),
     "no images": ("import", "{empty}", "--fx", 1, "--fy", 1, "--cx", 1, "--cy", 1, "--fps", 1, "-o", "{empty}/x"),
+    "no such family": ("generate", "crowdy", "--count", "2", "-o", "{empty}/set"),
+    "no recordings": ("generate", "crowded", "--count", "0", "-o", "{empty}/set"),
+    "no count": ("generate", "crowded", "-o", "{empty}/set"),
     "no picture": ("draw", "{recording}", "-o", "{empty}/picture.doc"),
     "no row of the table": ("table1", "--scenes", "walls"),
+    "no such figure": ("figure", "2", "-o", "{empty}/figures"),
+    "no figure": ("figure", "-o", "{empty}/figures"),
+    "nothing to compare": ("compare", "-o", "{empty}/x"),
+    "no such method": ("compare", "{recording}", "--methods", "default,trackr", "-o", "{empty}/x"),
+    "motions without a name": ("compare", "{recording}", "--motions", "{empty}", "-o", "{empty}/x"),
+    "motions that are not there": ("compare", "{recording}", "--motions", "mine={empty}", "-o", "{empty}/x"),
 }
 
 
@@ -148,7 +169,21 @@ def test_wrong_input_gets_one_line_and_status_2(
 
 @pytest.mark.parametrize(
     "command",
-    ["demo", "simulate", "import", "solve", "evaluate", "verify", "draw", "contact-sheet", "table1", "doctor"],
+    [
+        "demo",
+        "simulate",
+        "generate",
+        "import",
+        "solve",
+        "evaluate",
+        "verify",
+        "draw",
+        "contact-sheet",
+        "table1",
+        "figure",
+        "compare",
+        "doctor",
+    ],
 )
 def test_every_command_has_help_with_an_example(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(command, "--help") == 0

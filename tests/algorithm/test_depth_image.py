@@ -106,17 +106,17 @@ def test_tiny_images_are_shaded_too(shape: tuple[int, int]) -> None:
 
 
 def test_a_body_goes_on_behind_what_stands_before_it() -> None:
-    sensed = np.full((1, 40), 4.0, np.float32)
+    sensed = np.full((1, 90), 4.0, np.float32)
     sensed[0, 10:] = 2.0  # A wall, before the body.
     sensed[0, :5] = 9.0  # The background, behind it.
-    depth = np.full((1, 40), NAN)
+    depth = np.full((1, 90), NAN)
     depth[0, 5:10] = 4.0
-    image = np.zeros((1, 40), np.uint8)
+    image = np.zeros((1, 90), np.uint8)
     image[0, 5:10] = [50, 60, 70, 80, 90]
     again = continued_behind(image, depth, sensed)
     np.testing.assert_array_equal(again[0, :10], image[0, :10])
-    assert (again[0, 10:22] == 90).all()
-    assert not again[0, 22:].any()
+    assert (again[0, 10:70] == 90).all()
+    assert not again[0, 70:].any()
 
 
 def test_nothing_goes_on_where_nothing_moves() -> None:

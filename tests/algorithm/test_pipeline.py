@@ -112,8 +112,18 @@ def test_completed_points_lie_on_the_hidden_ball() -> None:
     assert np.percentile(away, 95) < 0.15
 
 
-def test_observed_points_are_the_pixels_of_the_recording() -> None:
+def test_observed_points_lie_on_the_surface_that_their_pixel_shows() -> None:
     motions = solved_crossing()
+    for frame in (0, 20, 59):
+        rows = (motions.frame == frame) & motions.observed
+        column, row = np.floor(motions.column_row[rows]).astype(int).T
+        seen_at, depth = CAMERA.pixel_from_world(motions.position[rows].astype(np.float64))
+        np.testing.assert_allclose(seen_at, motions.column_row[rows], atol=1e-3)
+        np.testing.assert_allclose(depth, crossing().frames[frame].depth[row, column], atol=0.1)
+
+
+def test_pixel_to_pixel_the_observed_points_are_the_pixels_of_the_recording() -> None:
+    motions = solve(crossing(), Settings(chaining="pixels"))
     for frame in (0, 20, 59):
         rows = (motions.frame == frame) & motions.observed
         column, row = np.floor(motions.column_row[rows]).astype(int).T

@@ -153,6 +153,30 @@ def test_leaving_points_out_never_helps(recording: Recording, motions: Motions, 
     assert found["coverage"] == pytest.approx(1 - share, abs=0.05)
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_of_a_bad_result_too_coverage_and_recall_fall_with_the_points(
+    recording: Recording, motions: Motions, seed: int
+) -> None:
+    """Who leaves out what is wrong may gain purity or a smaller error, and pays for it here."""
+    generator = np.random.default_rng(seed)
+    wrong = generator.random(len(motions)) < 0.3
+    position = (
+        motions.position + generator.normal(0, 0.1, (len(motions), 1)).astype(np.float32) * ~motions.observed[:, None]
+    )
+    bad = with_rows(
+        motions,
+        motion=np.where(wrong, LEFT + RIGHT - motions.motion, motions.motion).astype(np.int32),
+        position=position,
+    )
+    cleaned = without_rows(bad, wrong | (np.abs(position - motions.position) > 0.1).any(axis=1))
+    found, best = leaves(scores(recording, bad)), leaves(scores(recording, cleaned))
+    assert best["motions.purity"] > found["motions.purity"]
+    assert best["completion.mean_m"] < found["completion.mean_m"]
+    for name in ("coverage", "completion.recall", "completion.surface_coverage_10cm"):
+        assert best[name] <= found[name]
+    assert best["coverage"] < found["coverage"]
+
+
 def test_noise_is_lost_to_coverage(recording: Recording, motions: Motions) -> None:
     noise = motions.observed & (motions.motion == RIGHT)
     found = leaves(scores(recording, with_rows(motions, motion=np.where(noise, -1, motions.motion).astype(np.int32))))

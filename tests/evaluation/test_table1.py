@@ -5,8 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from evaluation.table1 import PAPER, OwnRow, PaperRow, measured_rows, misses, points_deviation, table_cells
+from evaluation.kept import Kept
+from evaluation.paper_rows import PAPER, PaperRow
+from evaluation.table1 import OwnRow, measured_rows, misses, points_deviation
 from recording.errors import InputError
+from simulator.scene import load_scene
 
 
 def exact(paper: PaperRow) -> OwnRow:
@@ -48,13 +51,21 @@ def test_points_within_a_range_do_not_deviate() -> None:
 
 
 def test_recordings_are_kept_and_measured_again(tmp_path: Path) -> None:
-    first = measured_rows(["house"], folder=tmp_path, size="67x50")
+    kept = Kept(folder=tmp_path, size="67x50")
+    first = measured_rows(["house"], kept)
     written = (tmp_path / "house" / "recording.json").stat().st_mtime_ns
-    assert measured_rows(["house"], folder=tmp_path, size="67x50") == first
+    assert measured_rows(["house"], kept) == first
     assert (tmp_path / "house" / "recording.json").stat().st_mtime_ns == written
-    assert table_cells(first)[0]["Fr"] == "30 | 30"
+    assert first[0].own.frames == 30
+    assert first[0].results == ()
 
 
-def test_an_unknown_scene_is_refused_with_the_nearest() -> None:
+@pytest.mark.parametrize("paper", PAPER, ids=lambda row: row.scene)
+def test_the_papers_epsilons_are_those_of_the_scenes(paper: PaperRow) -> None:
+    stated = load_scene(paper.scene).paper
+    assert tuple(getattr(stated, f"eps{number}") for number in range(1, 6)) == paper.epsilons
+
+
+def test_an_unknown_scene_is_refused_with_the_nearest(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="unknown scene 'hous', did you mean 'house'"):
-        measured_rows(["hous"])
+        measured_rows(["hous"], Kept(folder=tmp_path))

@@ -198,6 +198,23 @@ BAD_FILES: dict[str, tuple[Callable[[Path], object], str]] = {
     "half a representative": (with_metadata(representatives='[{"motion": 0}]'), "metadata is damaged"),
     "links of something": (with_metadata(links='[{"from": 0}]'), "metadata is damaged"),
     "no list": (with_metadata(representatives="3"), "metadata is damaged"),
+    "a representative of two lengths": (
+        with_metadata(
+            representatives='[{"motion": 0, "frame": [0, 1], "x": [0], "y": [0], "z": [0], "observed": [true]}]'
+        ),
+        "metadata is damaged: representatives.0: expected every frame once",
+    ),
+    "a representative twice in a frame": (
+        with_metadata(
+            representatives='[{"motion": 0, "frame": [1, 1], "x": [0, 0], "y": [0, 0], "z": [0, 0], '
+            '"observed": [true, true]}]'
+        ),
+        "metadata is damaged: representatives.0: expected every frame once",
+    ),
+    "seconds in a list": (with_metadata(seconds="[1, 2]"), "metadata is damaged: seconds"),
+    "settings of nothing": (with_metadata(settings='"default"'), "metadata is damaged: settings"),
+    "a number as digest": (with_metadata(recording_digest="12"), "metadata is damaged: recording_digest"),
+    "events of words": (with_metadata(events='["met"]'), "metadata is damaged: events"),
 }
 
 

@@ -83,3 +83,13 @@ def test_nobody_stops_within_one_frame() -> None:
     walk = walk_along(path_through([(0.0, 0.0), (2.0, 0.0)], speed=1.3), 4.0)
     acceleration = np.diff(walk.place, n=2, axis=0) * RATE**2
     assert np.linalg.norm(acceleration[during(walk, 0.3, 3.9)[2:]], axis=1).max() < 6.0
+
+
+def test_who_sways_on_the_spot_does_not_spin() -> None:
+    times = np.arange(0.0, 9.0, 0.2)
+    swaying = 0.02 * np.stack([np.sin(2.1 * times), np.cos(3.3 * times)], axis=-1)
+    there = np.stack([1.2 * np.clip(times, 0.0, 3.0), 0 * times], axis=-1)
+    path = path_through([(float(x), float(y)) for x, y in there + swaying], times=times.tolist())
+    walk = walk_along(path, 8.0)
+    assert np.abs(np.gradient(walk.heading, 1 / RATE)[during(walk, 0.0, 8.0)]).max() < 1.0  # Radians a second.
+    assert np.abs(walk.heading[during(walk, 0.0, 8.0)]).max() < 0.5

@@ -50,6 +50,13 @@ def test_a_stop_may_come_first_or_last() -> None:
     np.testing.assert_allclose(path.positions(np.array([0.5, 3.5])), [(1.0, 0.0), (3.0, 0.0)], atol=1e-9)
 
 
+@pytest.mark.parametrize("begin", [0.0, 0.3281, 0.5])
+def test_the_last_place_is_reached_whatever_the_rounding_of_the_times(begin: float) -> None:
+    path = path_through([(0.0, 0.0), (9.0, 0.0)], times=[begin, round(begin + 9.45, 4)])
+    assert (np.diff(path.places[:, 0]) > 0).all()
+    assert path.places[-1].tolist() == [9.0, 0.0]
+
+
 @pytest.mark.parametrize(
     ("waypoints", "given", "said"),
     [

@@ -47,6 +47,8 @@ def test_a_scan_has_the_frames_the_people_and_the_props_of_its_row(name: str) ->
     assert scene.sensor.model_dump() == {
         "preset": "structured_light",
         "sigma_m": 0.001,
+        "hole_share": 0.01,
+        "hole_px": 1.5,
         "nearest_m": 0.5,
         "farthest_m": 10.0,
         "seed": 0,

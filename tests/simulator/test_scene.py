@@ -108,7 +108,8 @@ def test_the_examples_in_the_documentation_are_scenes() -> None:
         ({"vary": {"sideway": 1}}, "unknown key 'vary.sideway', did you mean 'sideways_m'"),
         (
             {"sensor": {"preset": "kinect"}},
-            "sensor.preset: input should be 'ideal' or 'structured_light', got 'kinect'",
+            "sensor.preset: input should be 'ideal' or 'kinect1' or 'tof' or 'structured_light' or 'stereo', got "
+            "'kinect'",
         ),
         ({"paper": {"eps1": 1}}, "key 'paper.eps2' is missing"),
     ],

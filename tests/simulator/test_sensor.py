@@ -9,13 +9,16 @@ import pytest
 from recording.camera import Camera
 from recording.checks import validated
 from recording.errors import InputError
-from recording.frame import REASONS, Frame
+from recording.frame import Frame, Reason
 from recording.verify import verify
 from simulator.scene import Scene
-from simulator.sensor import OUT_OF_RANGE, Ideal, StructuredLight, sensed_frame
+from simulator.sensor import Ideal, sensed_frame
 from simulator.simulate import prepared, simulate, write_simulation
+from simulator.structured_light import StructuredLight
+from simulator.view import View
 
 CAMERA = Camera(width=160, height=120, fx=140.0, fy=140.0, cx=80.0, cy=60.0, world_from_camera=np.eye(4))
+VIEW = View(camera=CAMERA)
 SCENE = {
     "name": "noisy",
     "frames": 5,
@@ -40,13 +43,13 @@ def flat(depth: float = 3.0) -> Frame:
 def errors(sensor: StructuredLight, frames: int, depth: float = 3.0) -> np.ndarray:
     """The noise of some frames, a row a frame, metres."""
     exact = flat(depth)
-    sensed = [sensed_frame(exact, CAMERA, sensor, number=number) for number in range(frames)]
+    sensed = [sensed_frame(exact, VIEW, sensor, number=number) for number in range(frames)]
     return np.stack([(frame.depth - exact.depth)[exact.seen].astype(np.float64) for frame in sensed])
 
 
 @pytest.mark.parametrize("depth", [0.6, 3.0, 9.9])
 def test_the_noise_has_the_scanners_sigma_at_every_distance_and_no_bias(depth: float) -> None:
-    noise = errors(StructuredLight(preset="structured_light"), 6, depth)
+    noise = errors(StructuredLight(preset="structured_light", hole_share=0), 6, depth)
     assert noise.std() == pytest.approx(0.001, rel=0.05)
     assert abs(noise.mean()) < 4 * 0.001 / np.sqrt(noise.size)
     beyond = np.mean(np.abs(noise) > 0.00196)
@@ -54,14 +57,16 @@ def test_the_noise_has_the_scanners_sigma_at_every_distance_and_no_bias(depth: f
 
 
 def test_the_noise_of_one_frame_says_nothing_of_the_next_nor_a_pixel_of_its_neighbour() -> None:
-    noise = errors(StructuredLight(preset="structured_light"), 6)
+    noise = errors(StructuredLight(preset="structured_light", hole_share=0), 6)
     for before, after in pairwise(noise):
         assert abs(np.corrcoef(before, after)[0, 1]) < 0.03
     assert abs(np.corrcoef(noise[:, 1:].ravel(), noise[:, :-1].ravel())[0, 1]) < 0.02
 
 
 def test_another_seed_is_another_draw_and_the_same_seed_the_same() -> None:
-    one, again, other = (errors(StructuredLight(preset="structured_light", seed=seed), 1) for seed in (3, 3, 4))
+    one, again, other = (
+        errors(StructuredLight(preset="structured_light", seed=seed, hole_share=0), 1) for seed in (3, 3, 4)
+    )
     np.testing.assert_array_equal(one, again)
     assert abs(np.corrcoef(one, other)[0, 1]) < 0.03
 
@@ -69,30 +74,29 @@ def test_another_seed_is_another_draw_and_the_same_seed_the_same() -> None:
 @pytest.mark.parametrize("depth", [0.4, 10.5])
 def test_what_is_out_of_range_does_not_return_and_says_so(depth: float) -> None:
     exact = flat(depth)
-    frame = sensed_frame(exact, CAMERA, StructuredLight(preset="structured_light"), number=0)
+    frame = sensed_frame(exact, VIEW, StructuredLight(preset="structured_light", hole_share=0), number=0)
     assert not frame.seen.any()
     assert frame.reason is not None
-    assert REASONS[OUT_OF_RANGE] == "out of range"
-    np.testing.assert_array_equal(frame.reason, np.where(exact.seen, OUT_OF_RANGE, 1))
+    np.testing.assert_array_equal(frame.reason, np.where(exact.seen, Reason.OUT_OF_RANGE, 1))
     np.testing.assert_array_equal(frame.clean_depth, exact.depth)
 
 
 def test_the_ideal_sensor_gives_the_frame_itself() -> None:
     exact = flat()
-    assert sensed_frame(exact, CAMERA, Ideal(), number=3) is exact
+    assert sensed_frame(exact, VIEW, Ideal(), number=3) is exact
 
 
 def test_a_noisy_recording_keeps_its_truth() -> None:
     noisy, exact = simulate(Scene.model_validate(SCENE)), simulate(Scene.model_validate(SCENE), sensor="ideal")
     assert verify(noisy).passes, verify(noisy).text
-    parameters = {"sigma_m": 0.001, "nearest_m": 0.5, "farthest_m": 10.0, "seed": 0}
+    parameters = {"sigma_m": 0.001, "hole_share": 0.01, "hole_px": 1.5, "nearest_m": 0.5, "farthest_m": 10.0, "seed": 0}
     assert noisy.metadata.sensor == {"preset": "structured_light"} | parameters
     for sensed, clean in zip(noisy.frames, exact.frames, strict=True):
         np.testing.assert_array_equal(sensed.clean_depth, clean.depth)
         np.testing.assert_array_equal(sensed.labels.objectid, clean.labels.objectid)
         error = (sensed.depth - clean.depth)[sensed.seen]
         assert 0 < np.abs(error).max() < 0.006
-        assert np.mean(sensed.reason == OUT_OF_RANGE) > 0.3  # The near box and the far wall.
+        assert np.mean(sensed.reason == Reason.OUT_OF_RANGE) > 0.3  # The near box and the far wall.
 
 
 def test_workers_and_a_cut_change_no_byte(tmp_path: Path) -> None:
@@ -134,6 +138,7 @@ def test_an_impossible_sensor_is_refused_by_name(sensor: dict[str, object], sent
 
 def test_an_unknown_preset_asked_for_by_name_is_refused() -> None:
     with pytest.raises(
-        InputError, match=r"sensor\.preset: input should be 'ideal' or 'structured_light', got 'kinect'"
+        InputError,
+        match=r"sensor\.preset: input should be 'ideal' or 'kinect1' or 'tof' or .*'stereo', got 'kinect'",
     ):
         prepared(Scene.model_validate(SCENE), sensor="kinect")

@@ -168,6 +168,8 @@ def test_a_path_out_of_the_scenes_folder_is_refused(tmp_path: Path, file: str) -
         ('file = "walks.txt", id = 3, fps = 25, unit = "mm"', "unit: input should be 'm' or 'cm'"),
         ('file = "walks.txt", id = 3, fps = 25}\nspeed = 1 #', "in place of 'speed', got both"),
         ('file = "walks.txt", id = 3, fps = 90', "people walk at 2.5 m/s at most"),
+        ('file = "walks.txt", id = 3, fps = 25, first_frame = 200', "a first_frame from 100 to 199, .* got 200"),
+        ('file = "walks.txt", id = 3, fps = 25, first_frame = 99', "a first_frame from 100 to 199, .* got 99"),
     ],
 )
 def test_what_is_impossible_in_a_scene_is_refused(tmp_path: Path, trajectory: str, sentence: str) -> None:

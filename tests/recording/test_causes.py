@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from known import FRAMES, GROUND, LEFT, RIGHT, WALL, crossing, masks_only
 
-from evaluation.causes import NOT_HIDDEN, OUT_OF_VIEW, SENSOR, causes_of
+from recording.causes import NOT_HIDDEN, OUT_OF_VIEW, SENSOR, causes_of
 from recording.errors import InputError
 from recording.frame import Frame
 from recording.recording import Recording, stripped

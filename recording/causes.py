@@ -6,15 +6,19 @@ twin holds its front side only. That it hides points of its far side is a matter
 `recording.correspondence` answers it (`covered_by` is then the object itself).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Int64
 
 from recording.errors import InputError
+from recording.frame import Frame
+from recording.metadata import Metadata
 from recording.progress import tracked
 from recording.recording import Recording
-from recording.visibility import HIDDEN_BELOW, Visibility, visibility_of
+from recording.visibility import HIDDEN_BELOW, seen_pixels
+from recording.xray import XRay
 
 NOT_HIDDEN = 0
 """The cause where an object is not hidden."""
@@ -64,50 +68,68 @@ class Causes:
         return {cover: -negative / int(self.unoccluded[place]) for negative, cover in found}
 
 
-def causes_of(recording: Recording, visibility: Visibility | None = None) -> Causes:
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Tally:
+    """What is counted in one frame: it is small, and `causes_from` needs no more."""
+
+    seen: Int64[np.ndarray, "object"]
+    """Pixels with a return and the moving object's label."""
+    met: Int64[np.ndarray, "object label"]
+    """Unoccluded pixels of the moving object that carry each label; the last one counts labels of what there is not."""
+
+
+def causes_of(recording: Recording) -> Causes:
     """What hides each moving object in each frame, from one pass over frames and X-rays.
 
-    `visibility` saves a second pass where it is known already. Needs labels and X-ray twins that agree, as
-    `verify` checks; a recording without them is an `InputError`.
+    Needs labels and X-ray twins that agree, as `verify` checks; a recording without them is an `InputError`.
     """
     if recording.xray is None or recording.metadata.objects is None:
         raise InputError("expected a recording with X-ray twins, got one without: only simulated ones know what hides")
-    visibility = visibility or visibility_of(recording)
-    covers = tuple(sorted(entry.id for entry in recording.metadata.objects))
+    pictures = zip(recording.frames, recording.xray, strict=True)
     count = recording.metadata.frames
-    tables = [_met(recording, visibility.ids, number) for number in tracked(range(count), "causes", total=count)]
-    met = np.array(tables, np.int64).reshape(count, len(visibility.ids), max(covers, default=0) + 2)
-    return _causes(visibility, covers, met.transpose(1, 0, 2))
+    tallies = [tally_of(*picture, recording.metadata) for picture in tracked(pictures, "causes", total=count)]
+    return causes_from(tallies, recording.metadata)
 
 
-def _met(recording: Recording, ids: tuple[int, ...], number: int) -> list[Int64[np.ndarray, "label"]]:
-    """For each moving object: how many of its unoccluded pixels carry each label in the frame.
+def tally_of(frame: Frame, xray: XRay, metadata: Metadata) -> Tally:
+    """The tally of a frame with labels and its X-ray twin."""
+    ids, _ = _moving_and_all(metadata)
+    if frame.labels is None or not set(ids) <= set(xray):
+        raise InputError("expected labels and an X-ray of every moving object in every frame: make the recording again")
+    beyond = max((entry.id for entry in metadata.objects or ()), default=0) + 1
+    found = np.minimum(frame.labels.objectid, beyond).astype(np.int64)
+    seen = seen_pixels(frame)
+    met = [np.bincount(found[np.isfinite(xray[one])], minlength=beyond + 1) for one in ids]
+    return Tally(
+        seen=np.array([seen.get(one, 0) for one in ids], np.int64),
+        met=np.array(met, np.int64).reshape(len(ids), beyond + 1),
+    )
 
-    The last entry counts labels of what there is not.
-    """
-    labels, xray = recording.frames[number].labels, (recording.xray or [])[number]
-    if labels is None or not set(ids) <= set(xray):
-        raise InputError(f"frame {number}: expected labels and an X-ray of every moving object: make it again")
-    beyond = max((entry.id for entry in recording.metadata.objects or ()), default=0) + 1
-    found = np.minimum(labels.objectid, beyond).astype(np.int64)
-    return [np.bincount(found[np.isfinite(xray[one])], minlength=beyond + 1) for one in ids]
 
-
-def _causes(visibility: Visibility, covers: tuple[int, ...], met: Int64[np.ndarray, "object frame label"]) -> Causes:
-    """The causes by the labels that each object's unoccluded pixels carry."""
-    own = np.take_along_axis(met, np.array(visibility.ids, np.int64)[:, None, None], axis=2)[..., 0]
-    unoccluded, lost = met.sum(axis=2), own - visibility.seen
+def causes_from(tallies: Sequence[Tally], metadata: Metadata) -> Causes:
+    """What hides each moving object, by the tally of every frame, in their order."""
+    ids, covers = _moving_and_all(metadata)
+    seen = np.stack([tally.seen for tally in tallies], axis=1)
+    met = np.stack([tally.met for tally in tallies], axis=1)
+    own = np.take_along_axis(met, np.array(ids, np.int64)[:, None, None], axis=2)[..., 0]
+    unoccluded, lost = met.sum(axis=2), own - seen
     covered = met[..., list(covers)].copy()
-    covered[np.arange(len(visibility.ids)), :, np.searchsorted(covers, visibility.ids)] = 0
+    covered[np.arange(len(ids)), :, np.searchsorted(covers, ids)] = 0
     most = np.array(covers, np.int64)[covered.argmax(axis=2)]
     cause = np.where(lost > covered.max(axis=2), SENSOR, most)
-    hidden = visibility.seen < HIDDEN_BELOW * unoccluded
+    hidden = seen < HIDDEN_BELOW * unoccluded
     return Causes(
-        ids=visibility.ids,
+        ids=ids,
         covers=covers,
-        seen=visibility.seen,
+        seen=seen,
         unoccluded=unoccluded,
         covered=covered,
         lost=lost,
         cause=np.where(unoccluded == 0, OUT_OF_VIEW, np.where(hidden, cause, NOT_HIDDEN)),
     )
+
+
+def _moving_and_all(metadata: Metadata) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """The ids of what moves, and of everything, ascending."""
+    objects = sorted(metadata.objects or (), key=lambda entry: entry.id)
+    return tuple(entry.id for entry in objects if entry.moving), tuple(entry.id for entry in objects)

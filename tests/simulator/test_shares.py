@@ -6,10 +6,11 @@ from typing import Any
 
 import pytest
 
+from recording import workers
 from recording.errors import InputError
 from recording.store import load_recording
 from recording.verify import verify
-from simulator import workers
+from simulator import shares
 from simulator.backend import find_backend
 from simulator.scene import Scene
 from simulator.simulate import Simulation, prepared, write_simulation
@@ -48,7 +49,7 @@ def test_the_number_of_workers_changes_no_byte(small: Simulation, tmp_path: Path
 @pytest.mark.parametrize("count", [1, 2])
 def test_what_a_worker_cannot_write_is_one_line(small: Simulation, tmp_path: Path, count: int) -> None:
     nowhere = tmp_path / "nowhere"
-    written = workers.written_pictures(
+    written = shares.written_pictures(
         small.stage, nowhere, metadata=small.metadata, backend=find_backend(), workers=count
     )
     with pytest.raises(InputError, match=r"nowhere/frames/00000[01]\.exr: cannot be written") as refused:
@@ -77,9 +78,7 @@ def test_who_stops_asking_stops_the_workers(small: Simulation, tmp_path: Path, m
     start = workers._started
     monkeypatch.setattr(workers, "_started", lambda: started.append(start()) or started[-1])
     (tmp_path / "frames").mkdir()
-    written = workers.written_pictures(
-        small.stage, tmp_path, metadata=small.metadata, backend=find_backend(), workers=2
-    )
+    written = shares.written_pictures(small.stage, tmp_path, metadata=small.metadata, backend=find_backend(), workers=2)
     next(written)
     written.close()
     assert len(started) == 2

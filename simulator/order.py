@@ -1,0 +1,131 @@
+"""Recordings of a random family that are made one after the other by one process."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from recording.causes import tally_of
+from recording.errors import InputError
+from recording.manifest import Entry, Split, entry_of
+from recording.metadata import Metadata
+from recording.recording import DepthDigest
+from recording.store import load_recording, new_recording, write_metadata, write_picture
+from simulator.backend import Backend
+from simulator.family import DEVELOPMENT_SEEDS, REPORTING_SEEDS, Family
+from simulator.family_scene import drawn_scene
+from simulator.pictures import pictures
+from simulator.simulate import Simulation, changed_scene, made_ready, picture_size
+
+
+@dataclass(frozen=True, kw_only=True)
+class Order:
+    """What recordings of a family are to be like, and where they are to be."""
+
+    family: Family
+    folder: Path
+    """Of the data set; a recording's folder in it has the family's name and the seed."""
+    sensor: str | None = None
+    """A preset in place of the family's sensor."""
+    size: str | None = None
+    """A picture size in place of the family's own, as in `simulator.simulate.prepared`."""
+    overwrite: bool = False
+    """Whether recordings that are there are made again."""
+
+    def simulation(self, seed: int) -> Simulation:
+        """The scene of the seed, ready to be cast; an InputError where the family has none."""
+        scene = drawn_scene(self.family, seed).model_copy(update={"name": f"{self.family.name}-{seed:06d}"})
+        pixels = None if self.size is None else picture_size(self.size, scene)
+        return made_ready(changed_scene(scene, size=pixels, frames=None, sensor=self.sensor), seed=seed)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Refused:
+    """A seed whose scene cannot be had."""
+
+    seed: int
+    sentence: str
+    """Why not."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drawn:
+    """A scene has been drawn, and nothing yet been written."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class FrameDone:
+    """A frame has been written."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Listed:
+    """A recording is complete."""
+
+    entry: Entry
+    made: bool
+    """Whether it was made just now, or was there already."""
+
+
+Step = Refused | Drawn | FrameDone | Listed
+
+
+@dataclass(frozen=True, kw_only=True)
+class Batch:
+    """The recordings that one process makes, of some of the seeds."""
+
+    order: Order
+    seeds: Sequence[int]
+    backend: Backend
+
+    def reports(self) -> Iterator[Step]:
+        """Each step, one recording after the other; who asks may be gone at any of them."""
+        for seed in self.seeds:
+            try:
+                simulation = self.order.simulation(seed)
+            except InputError as error:
+                yield Refused(seed=seed, sentence=str(error))
+                continue
+            yield Drawn()
+            yield from self._recorded(simulation)
+
+    def _recorded(self, simulation: Simulation) -> Iterator[Step]:
+        place = self.order.folder / simulation.scene.name
+        if place.exists() and not self.order.overwrite:
+            yield Listed(entry=_entry_there(place, simulation.metadata), made=False)
+        else:
+            yield from self._made(simulation, place)
+
+    def _made(self, simulation: Simulation, place: Path) -> Iterator[Step]:
+        tallies, digest = [], DepthDigest(simulation.metadata)
+        with new_recording(place, truth=simulation.truth, overwrite=self.order.overwrite) as partial:
+            for number, (frame, xray) in enumerate(pictures(simulation.stage, self.backend)):
+                write_picture(partial, number, frame, xray, metadata=simulation.metadata)
+                tallies.append(tally_of(frame, xray, simulation.metadata))
+                digest.add(frame)
+                yield FrameDone()
+            metadata = simulation.described(tallies)
+            write_metadata(partial, metadata)
+        yield Listed(entry=_entry(metadata, digest.hexdigest()), made=True)
+
+
+def split_of(seed: int) -> Split:
+    """What the seed is for."""
+    if seed in DEVELOPMENT_SEEDS:
+        return "development"
+    return "reporting" if seed in REPORTING_SEEDS else "none"
+
+
+def _entry_there(place: Path, expected: Metadata) -> Entry:
+    """The entry of a recording that is there already; an InputError where it is not the expected one."""
+    recording = load_recording(place)
+    found = recording.metadata
+    if found.scene_digest != expected.scene_digest or found.seed != expected.seed or found.occlusion is None:
+        raise InputError(
+            f"{place}: expected the recording of seed {expected.seed} that was asked for, got one of another scene: "
+            "choose another folder, or pass --overwrite to replace it"
+        )
+    return _entry(found, recording.digest())
+
+
+def _entry(metadata: Metadata, digest: str) -> Entry:
+    return entry_of(metadata, digest=digest, split=split_of(metadata.seed or 0))

@@ -1,0 +1,149 @@
+"""Range flow: known motions of surfaces, none, both ways, and the loops against plain NumPy."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from worlds import Surface, box, depths_of, plane, small_camera, sphere
+
+from algorithm.depth_image import grey_image, shading_image, smoothed_depth
+from algorithm.range_flow import View, agreed, range_flow
+from algorithm.sampling import on_surface
+from recording.camera import pixel_grid
+
+CAMERA = small_camera(96, 72)
+
+
+def views_of(surface: Surface, frames: int = 2) -> list[View]:
+    depths, _ = depths_of([surface], CAMERA, frames)
+    return [view_of(depth) for depth in depths]
+
+
+def view_of(depth: np.ndarray) -> View:
+    return View(
+        surface=smoothed_depth(depth, similar_depth_m=0.1),
+        grey=grey_image(depth, within=(1.0, 5.0)),
+        start=shading_image(depth, camera=CAMERA, similar_depth_m=0.1),
+    )
+
+
+def bumpy(centre: Callable[[int], tuple[float, float, float]]) -> Surface:
+    """A ball with bumps, so that its turning and its moving can be told apart."""
+
+    def depth(rays: np.ndarray, frame: int) -> np.ndarray:
+        balls = [sphere(lambda t: np.add(centre(t), offset), 0.22) for offset in OFFSETS]  # noqa: B023 - called at once.
+        return np.min([ball(rays, frame) for ball in balls], axis=0)
+
+    return depth
+
+
+OFFSETS = np.random.default_rng(3).uniform(-0.35, 0.35, size=(12, 3))
+
+
+@pytest.mark.parametrize("step", [(0.05, 0.0, 0.0), (0.0, -0.04, 0.0), (0.0, 0.0, 0.06), (-0.03, 0.02, -0.05)], ids=str)
+def test_a_surface_is_followed_in_picture_and_depth(step: tuple[float, float, float]) -> None:
+    a, b = views_of(bumpy(lambda frame: (0.1 + step[0] * frame, step[1] * frame, 3.0 + step[2] * frame)))
+    flow = range_flow(a, b)
+    depth = a.surface.astype(np.float64)
+    point = CAMERA.camera_from_pixel(pixel_grid(72, 96), depth)
+    moved, _ = CAMERA.pixel_from_world(point + np.array(step))
+    miss = np.linalg.norm(flow.column_row - (moved - pixel_grid(72, 96)), axis=-1)[np.isfinite(depth)]
+    assert np.median(miss) < 0.15
+    assert np.percentile(miss, 90) < 0.6
+    assert np.nanmedian(np.abs(flow.depth - step[2])) < 0.006
+
+
+def test_a_turning_box_is_followed() -> None:
+    turn = np.radians(3.0)
+    a, b = views_of(box(lambda _: (0.0, 0.0, 3.0), (0.5, 0.5, 0.5), lambda frame: 0.6 + turn * frame))
+    flow = range_flow(a, b)
+    point = CAMERA.camera_from_pixel(pixel_grid(72, 96), a.surface.astype(np.float64)) - np.array([0.0, 0.0, 3.0])
+    turned = np.stack(
+        [
+            np.cos(turn) * point[..., 0] + np.sin(turn) * point[..., 2],
+            point[..., 1],
+            np.cos(turn) * point[..., 2] - np.sin(turn) * point[..., 0],
+        ],
+        axis=-1,
+    )
+    inner = np.isfinite(a.surface)
+    assert np.nanmedian(np.abs(flow.depth - (turned - point)[..., 2])[inner]) < 0.006
+
+
+@pytest.mark.parametrize("surface", [plane(lambda _: 3.0), bumpy(lambda _: (0.0, 0.0, 3.0))])
+def test_no_motion_is_exactly_zero(surface: Surface) -> None:
+    a, b = views_of(surface)
+    flow = range_flow(a, b)
+    assert not flow.column_row.any()
+    np.testing.assert_array_equal(np.isfinite(flow.depth), np.isfinite(a.surface))
+    assert not np.nan_to_num(flow.depth).any()
+
+
+def test_there_and_back_cancel() -> None:
+    a, b = views_of(bumpy(lambda frame: (0.04 * frame, 0.0, 3.0 + 0.04 * frame)))
+    forward, backward = range_flow(a, b), range_flow(b, a)
+    mean = agreed(forward, backward, a, b)
+    known = np.isfinite(a.surface)
+    row, column = np.nonzero(known)
+    missed = [
+        mean.column_row[i, j]
+        + [
+            on_surface(
+                np.ascontiguousarray(backward.column_row[..., c]),
+                b.surface,
+                (i + mean.column_row[i, j, 1], j + mean.column_row[i, j, 0]),
+                a.surface[i, j] + mean.depth[i, j],
+                0.1,
+            )
+            for c in (0, 1)
+        ]
+        for i, j in zip(row, column, strict=True)
+    ]
+    assert np.nanmedian(np.linalg.norm(missed, axis=1)) < 0.1
+
+
+@pytest.mark.parametrize("shape", [(72, 96), (1, 1), (2, 50)])
+def test_empty_frames_have_no_flow(shape: tuple[int, int]) -> None:
+    nothing = View(
+        surface=np.full(shape, np.nan, np.float32), grey=np.zeros(shape, np.uint8), start=np.zeros(shape, np.uint8)
+    )
+    something = View(
+        surface=np.full(shape, 2.0, np.float32), grey=np.full(shape, 9, np.uint8), start=np.full(shape, 250, np.uint8)
+    )
+    for a, b in ((nothing, nothing), (nothing, something), (something, nothing)):
+        flow = range_flow(a, b)
+        assert flow.column_row.dtype == flow.depth.dtype == np.float32
+        assert np.isfinite(flow.column_row).all()
+        np.testing.assert_array_equal(np.isfinite(flow.depth), np.isfinite(a.surface))
+
+
+def test_an_object_of_one_pixel_has_a_finite_flow() -> None:
+    depth = np.full((72, 96), np.nan, np.float32)
+    one, other = depth.copy(), depth.copy()
+    one[30, 40], other[30, 42] = 3.0, 3.0
+    flow = range_flow(view_of(one), view_of(other))
+    assert np.isfinite(flow.depth[30, 40])
+    assert np.isfinite(flow.column_row).all()
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    seed=st.integers(0, 2**31),
+    row=st.floats(-2, 7, allow_nan=False),
+    column=st.floats(-2, 8, allow_nan=False),
+)
+def test_sampling_a_surface_is_bilinear_over_its_own_pixels(seed: int, row: float, column: float) -> None:
+    generator = np.random.default_rng(seed)
+    depth = np.where(generator.uniform(size=(6, 7)) < 0.3, 5.0, 2.0) + generator.normal(scale=0.01, size=(6, 7))
+    depth[generator.uniform(size=(6, 7)) < 0.2] = np.nan
+    image = generator.normal(size=(6, 7))
+    total = value = 0.0
+    for i in range(6):
+        for j in range(7):
+            weight = max(0.0, 1 - abs(i - row)) * max(0.0, 1 - abs(j - column))
+            if weight and abs(depth[i, j] - 2.0) <= 0.1:
+                total, value = total + weight, value + weight * image[i, j]
+    expected = value / total if total >= 0.2 else np.nan
+    np.testing.assert_allclose(on_surface(image, depth, (row, column), 2.0, 0.1), expected, atol=1e-9)
