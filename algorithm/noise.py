@@ -17,6 +17,7 @@ def surface_noise_m(depths: Sequence[Float32[np.ndarray, "row column"]]) -> floa
     """The standard deviation of the depth of neighbouring pixels on a surface, metres; 0 where there is no surface.
 
     It is that of their fourth differences along rows and columns, over up to 12 frames spread over the recording.
+    Above 5 cm it says too little, for differences of a metre are edges.
     """
     chosen = np.unique(np.linspace(0, len(depths) - 1, _FRAMES).round().astype(int))
     found = [np.zeros(0)]
