@@ -127,6 +127,7 @@ def _oldest(
 ) -> Int64[np.ndarray, "kept"]:
     """Which points go on: in each cell of half a pixel the one that began first."""
     cell = np.floor(column_row * _CELLS_A_PIXEL).astype(np.int64)
+    cell -= cell.min(axis=0, initial=0)  # A place may lie a little outside the picture.
     key = cell[:, 1] * (cell[:, 0].max(initial=0) + 1) + cell[:, 0]
     order = np.lexsort((number, key))  # Numbers grow with time.
     first = np.ones(len(order), bool)

@@ -17,7 +17,7 @@ import numpy as np
 from cyclopts import App
 
 import unocclude
-from benchmarks.tables import Row, show
+from benchmarks.tables import Row, run, show
 from recording.errors import InputError
 from recording.occlusion import Achieved
 from simulator.family import Family, load_family
@@ -114,4 +114,4 @@ def _times(seconds: list[float], count: int, refused: int) -> Row:
 
 
 if __name__ == "__main__":
-    app()
+    run(app)

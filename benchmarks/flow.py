@@ -16,7 +16,7 @@ from cyclopts import App
 from algorithm.settings import PixelFlowName
 from benchmarks.flow_on_depth import depth_rows
 from benchmarks.flow_on_photographs import middlebury_rows
-from benchmarks.tables import show
+from benchmarks.tables import run, show
 
 app = App(help=__doc__)
 _ON_DEPTH = ("deepflow:grey", "classic_nl_fast:grey", "dis:shading", "range")
@@ -53,4 +53,4 @@ def flow(  # noqa: PLR0913 - as many as the table has dimensions.
 
 
 if __name__ == "__main__":
-    app()
+    run(app)

@@ -17,7 +17,7 @@ import time
 from cyclopts import App
 
 from benchmarks.bare import Bare
-from benchmarks.tables import Row, show
+from benchmarks.tables import Row, run, show
 from recording.workers import reported
 from simulator.backend import Backend, BackendWish, find_backend
 from simulator.family import Family, load_family
@@ -86,4 +86,4 @@ def bare_seconds(order: Order, seeds: list[int], workers: int, backend: Backend)
 
 
 if __name__ == "__main__":
-    app()
+    run(app)

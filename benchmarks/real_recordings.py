@@ -1,7 +1,7 @@
 """Real recordings from a ceiling camera: motions against masks, hidden places against the full depth.
 
-Reads gotpd_two, gotpd_beam and gotpd_walk from the folder that UNOCCLUDE_DATA names, else from
-../shared/data beside the project. Takes about 3 minutes on 2 cores.
+Reads gotpd_two, gotpd_beam and gotpd_walk from the folder that --data or UNOCCLUDE_DATA names. Takes about 3 minutes on
+2 cores.
 """
 
 import sys
@@ -10,17 +10,16 @@ from pathlib import Path
 sys.path[0] = str(Path(__file__).parents[1])  # This folder's simulator.py would hide the package.
 
 
-import os
-import sys
 import tempfile
-from pathlib import Path
+from typing import Annotated
 
 import numpy as np
-from cyclopts import App
+from cyclopts import App, Parameter
 
 import unocclude
-from benchmarks.tables import Row, score_row, show
+from benchmarks.tables import Row, run, score_row, show
 from evaluation.picture import draw_overview
+from recording.errors import InputError
 from recording.importing import Calibration, depth_image, import_images
 
 app = App(help=__doc__)
@@ -35,17 +34,21 @@ SETS = {
 
 
 @app.default
-def real(*, pictures: Path | None = None, preset: str = "default", json: bool = False) -> None:
+def real(
+    *,
+    data: Annotated[Path, Parameter(env_var="UNOCCLUDE_DATA")],
+    pictures: Path | None = None,
+    preset: str = "default",
+    json: bool = False,
+) -> None:
     """Print the scores of the three recordings.
 
     Args:
+        data: Folder with the three recordings' own.
         pictures: Folder to draw each solved recording into.
         preset: Settings to solve with.
         json: One JSON object in place of the table.
     """
-    data = Path(os.environ.get("UNOCCLUDE_DATA", Path(__file__).parents[2] / "shared" / "data"))
-    if not data.is_dir():
-        sys.exit(f"{data}: expected the real recordings here; name their folder in UNOCCLUDE_DATA")
     rows: list[Row] = []
     for name in SETS:
         recording = recorded(data / name)
@@ -58,6 +61,8 @@ def real(*, pictures: Path | None = None, preset: str = "default", json: bool = 
 
 def recorded(source: Path) -> unocclude.Recording:
     """One of the recordings; the walkers' full depth, where there is any, is its X-ray."""
+    if not source.is_dir():
+        raise InputError(f"{source}: expected the folder of a real recording, got none: name the one above by --data")
     pattern, scale, masks = SETS[source.name]
     calibration = Calibration(fx=365, fy=365, cx=256, cy=212, fps=30, scale=scale)
     with tempfile.TemporaryDirectory() as folder:
@@ -74,4 +79,4 @@ def recorded(source: Path) -> unocclude.Recording:
 
 
 if __name__ == "__main__":
-    app()
+    run(app)

@@ -21,7 +21,7 @@ from typing import TypeVar
 import numpy as np
 from cyclopts import App
 
-from benchmarks.tables import Row, show
+from benchmarks.tables import Row, run, show
 from recording.camera import pixel_grid
 from recording.store import write_picture
 from recording.truth import MeshSequence
@@ -244,4 +244,4 @@ def row(what: str, seconds: float, ratio: float | None = None) -> Row:
 
 
 if __name__ == "__main__":
-    app()
+    run(app)

@@ -1,12 +1,22 @@
-"""What every benchmark prints: a table for people, or with --json one object for programs."""
+"""How every benchmark runs, and what it prints: a table for people, or with --json one object for programs."""
 
 import json
+import sys
+from pathlib import Path
 from typing import Any
 
+from cyclopts import App
 from rich.console import Console
 from rich.table import Table
 
+from commands import common
+
 Row = dict[str, Any]
+
+
+def run(app: App) -> None:
+    """Run a benchmark, which ends as a command of `unocclude` does: wrong input is one line and exit status 2."""
+    common.run(app, name=Path(sys.argv[0]).name)
 
 
 def show(title: str, rows: list[Row], *, as_json: bool) -> None:

@@ -18,7 +18,7 @@ from algorithm.pipeline import observed_trajectories
 from algorithm.settings import Settings, changed_settings
 from algorithm.spacing import mean_point_spacing
 from algorithm.stopwatch import Stopwatch
-from benchmarks.tables import Row, mean_row, show
+from benchmarks.tables import Row, mean_row, run, show
 from evaluation.drift import AGES, Drift, drift_of
 from evaluation.oracles import true_flow
 from recording.recording import Recording
@@ -99,4 +99,4 @@ def _quality(drift: Drift) -> Row:
 
 
 if __name__ == "__main__":
-    app()
+    run(app)

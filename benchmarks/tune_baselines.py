@@ -19,7 +19,7 @@ import numpy as np
 from cyclopts import App
 
 import unocclude
-from benchmarks.tables import Row, show
+from benchmarks.tables import Row, run, show
 from evaluation.baseline import BaselineSettings
 from evaluation.carried import DetectionTrack, motions_of_tracks
 from evaluation.detections import Detections, DetectorSettings, MovingPoints, detections_of, moving_points
@@ -136,4 +136,4 @@ def _scores(case: Case, settings: BaselineSettings, tracks_of: Tracks) -> dict[s
 
 
 if __name__ == "__main__":
-    app()
+    run(app)

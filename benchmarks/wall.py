@@ -12,7 +12,7 @@ sys.path[0] = str(Path(__file__).parents[1])  # This folder's simulator.py would
 from cyclopts import App
 
 import unocclude
-from benchmarks.tables import Row, mean_row, score_row, show
+from benchmarks.tables import Row, mean_row, run, score_row, show
 
 app = App(help=__doc__)
 
@@ -39,4 +39,4 @@ def wall(*, seeds: tuple[int, ...] = (1001, 1002, 1003, 1004, 1005), size: str =
 
 
 if __name__ == "__main__":
-    app()
+    run(app)

@@ -1,7 +1,6 @@
 """Methods side by side on any list of recordings: the same scores for all, by several processes, resumable."""
 
 import os
-import re
 from collections.abc import Mapping, Sequence
 from contextlib import closing
 from pathlib import Path
@@ -14,8 +13,6 @@ from recording.errors import InputError
 from recording.manifest import MANIFEST, load_manifest
 from recording.progress import tracked
 from recording.workers import reported
-
-_NUMBERED = re.compile(r"[-_]\d+$")
 
 
 def compared(
@@ -67,11 +64,6 @@ def labelled(recordings: Sequence[Path]) -> dict[str, Path]:
     return labels
 
 
-def group_of(outcome: Outcome) -> str:
-    """The scene or family of a recording: its name without the number that a data set gives it."""
-    return _NUMBERED.sub("", outcome.name)
-
-
 def _expanded(given: Path) -> list[Path]:
     if (given / MANIFEST).is_file():
         return [given / entry.name for entry in load_manifest(given).recordings]
@@ -84,9 +76,12 @@ def _check_methods(methods: Sequence[str], elsewhere: Mapping[str, Path]) -> Non
     wrong = next((name for name in methods if name not in METHODS), None)
     if wrong is not None:
         raise InputError(f"--methods: unknown method {wrong!r}, {nearest_name(wrong, METHODS)}")
-    twice = next((name for name in elsewhere if name in METHODS), None)
+    twice = next((name for name in methods if methods.count(name) > 1), None)
     if twice is not None:
-        raise InputError(f"--motions: {twice!r} is one of our methods: choose another name")
+        raise InputError(f"--methods: expected every method once, got {twice!r} several times")
+    ours = next((name for name in elsewhere if name in METHODS), None)
+    if ours is not None:
+        raise InputError(f"--motions: {ours!r} is one of our methods: choose another name")
     if not methods and not elsewhere:
         raise InputError("--methods: expected at least one, got none")
     if "gap_closing" in methods:

@@ -27,8 +27,9 @@ _NO_SHARE = 0.02
 def draw_hidden_time(spans: Sequence[Span], path: Path, *, overwrite: bool = False) -> None:
     """Recall, centre error and point error of every method by the time hidden, as PNG or SVG by the ending.
 
-    Means over recordings with their 95 % confidence intervals, which may run out of the picture; the methods stand side
-    by side in each span of time, those with a stage that knows the truth dashed. Errors on a logarithmic axis.
+    Means over recordings, of one group with their 95 % confidence intervals, which may run out of the picture; the
+    methods stand side by side in each span of time, those with a stage that knows the truth dashed. Errors on a
+    logarithmic axis.
     """
     with styled(letters=9.0):
         figure = Figure(figsize=(14, 4.6), layout="constrained")

@@ -10,11 +10,10 @@ from typing import Any, Literal
 
 from tabulate import tabulate
 
-from evaluation.compare import group_of
 from evaluation.compare_plot import draw_hidden_time
 from evaluation.hidden_time import EDGES_S, Span, spans_of
 from evaluation.interval import Interval, mean_interval
-from evaluation.outcome import Outcome
+from evaluation.outcome import Outcome, one_group
 from evaluation.scores import Scores
 from recording.atomic import whole_file
 from recording.version import VERSION
@@ -24,8 +23,9 @@ Cells = dict[str, str]
 EVERYTHING = "all recordings"
 NOTHING = "-"
 NOTE = (
-    "Means over the recordings with the 95 % confidence interval of the mean (Student's t); where a method has no "
-    "number on a recording, over the others. found: share of the objects that a motion stands for. centre and points: "
+    "Means over the recordings, with the 95 % confidence interval of the mean (Student's t) where all are of one scene "
+    "or family. n: recordings on which the method did not fail; its means are over these, or over those of them on "
+    "which it has the number. found: share of the objects that a motion stands for. centre and points: "
     "mean error in hidden frames, cm, worth nothing without recall and surface (shares of what is hidden). link prec. "
     "and rec.: precision and recall of the links between segments. s: wall-clock seconds of processes that share the "
     "machine. The true_ methods are default with one stage that knows the truth."
@@ -77,7 +77,7 @@ def comparison_document(outcomes: Sequence[Outcome]) -> dict[str, Any]:
     """Everything as one JSON object: means of all scores by group and method, and by the time hidden."""
     return {
         "version": VERSION,
-        "interval": "mean +- half_width: 95 % confidence interval of the mean over recordings, Student's t",
+        "interval": "mean +- half_width: 95 % confidence interval of the mean over recordings of a group, Student's t",
         "groups": {
             title: {
                 method: {
@@ -125,15 +125,17 @@ def write_comparison(outcomes: Sequence[Outcome], folder: Path) -> None:
 
 def groups_of(outcomes: Sequence[Outcome]) -> dict[str, list[Outcome]]:
     """The outcomes by scene or family, and all of them where there are several."""
-    groups = _by(outcomes, group_of)
+    groups = _by(outcomes, lambda one: one.group)
     return groups | {EVERYTHING: list(outcomes)} if len(groups) > 1 else groups
 
 
 def intervals_of(outcomes: Sequence[Outcome]) -> dict[str, Interval | None]:
-    """The mean of every score by dotted key over the outcomes that have it."""
+    """The mean of every score by dotted key over the outcomes that have it; of several groups without intervals."""
     flat = [flattened(outcome.scores) for outcome in outcomes if outcome.scores is not None]
-    keys = dict.fromkeys(key for scores in flat for key, value in scores.items() if not isinstance(value, str))
-    return {key: mean_interval([scores.get(key) for scores in flat]) for key in keys}
+    words = {key for scores in flat for key, value in scores.items() if isinstance(value, str)}
+    keys = dict.fromkeys(key for scores in flat for key in scores if key not in words)
+    alike = one_group(outcomes)
+    return {key: mean_interval([scores.get(key) for scores in flat], alike=alike) for key in keys}
 
 
 def flattened(scores: Scores) -> Scores:
@@ -159,7 +161,8 @@ def _cells(method: str, outcomes: Sequence[Outcome]) -> Cells:
     intervals = intervals_of(outcomes)
     failed = sum(one.failure is not None for one in outcomes)
     cells = {name: _cell(intervals.get(column.key), column) for name, column in COLUMNS.items()}
-    return {"method": f"{method} ({failed} failed)" if failed else method, **cells}
+    name = f"{method} ({failed} failed)" if failed else method
+    return {"method": name, "n": str(len(outcomes) - failed), **cells}
 
 
 def _span_cells(span: Span) -> Cells:
@@ -201,7 +204,7 @@ def _by(outcomes: Sequence[Outcome], key: Callable[[Outcome], str]) -> dict[str,
 
 
 def _record(outcome: Outcome) -> dict[str, Any]:
-    known = {"group": group_of(outcome), "recording": outcome.recording, "seed": outcome.seed}
+    known = {"group": outcome.group, "recording": outcome.recording, "seed": outcome.seed}
     scores = flattened(outcome.scores) if outcome.scores is not None else {}
     return {**known, "method": outcome.method, "failure": outcome.failure, **scores}
 

@@ -66,7 +66,7 @@ def _legend(frames: Sequence[Frame]) -> list[Patch]:
     given = np.concatenate([frame.reason.ravel() for frame in frames if frame.reason is not None])
     count = np.bincount(given, minlength=len(REASONS))
     return [
-        Patch(facecolor=_REASON_COLOURS[reason], edgecolor="#000000", label=f"{REASONS[reason]} {share:.1%}")
+        Patch(facecolor=_REASON_COLOURS[reason], edgecolor="#000000", label=f"{REASONS[reason]} {_percent(share)}")
         for reason, share in zip(Reason, count / len(given), strict=False)
         if share > 0
     ]
@@ -91,3 +91,8 @@ def _objects(frame: Frame) -> np.ndarray | None:
 
 def _reasons(frame: Frame) -> np.ndarray | None:
     return frame.reason
+
+
+def _percent(share: float) -> str:
+    """A share of the pixels; what is there is never shown as nothing."""
+    return "under 0.1%" if 0 < share < 0.0005 else f"{share:.1%}"

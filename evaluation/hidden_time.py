@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from evaluation.interval import Interval, mean_interval
-from evaluation.outcome import HiddenLength, Outcome
+from evaluation.outcome import HiddenLength, Outcome, one_group
 
 EDGES_S = (0.0, 0.2, 0.4, 0.8, 1.6, float("inf"))
 """The spans of time hidden that runs of hidden frames are gathered in, seconds; each from its begin up to its end."""
@@ -16,6 +16,7 @@ class Span:
     """How one method completes the runs of hidden frames that last from `begin_s` to `end_s` seconds.
 
     Each recording counts once in an interval: with its mean over all hidden object-frames, or points, of the span.
+    Over recordings of several groups there are means without intervals.
     """
 
     method: str
@@ -38,13 +39,14 @@ class Span:
 def spans_of(outcomes: Sequence[Outcome]) -> list[Span]:
     """The spans of every method in which something is hidden, by method, then time."""
     spans = []
+    alike = one_group(outcomes)
     for method in dict.fromkeys(outcome.method for outcome in outcomes):
         own = [outcome for outcome in outcomes if outcome.method == method]
         for begin, end in pairwise(EDGES_S):
             parts = [[row for row in one.by_length if begin <= row.seconds < end] for one in own]
             parts = [part for part in parts if part]
             recall = mean_interval(
-                [_mean(part, lambda row: row.recall, lambda row: row.object_frames) for part in parts]
+                [_mean(part, lambda row: row.recall, lambda row: row.object_frames) for part in parts], alike=alike
             )
             if recall is not None:
                 spans.append(
@@ -54,8 +56,12 @@ def spans_of(outcomes: Sequence[Outcome]) -> list[Span]:
                         end_s=end,
                         object_frames=sum(row.object_frames for part in parts for row in part),
                         recall=recall,
-                        points_m=mean_interval([_mean(part, _points_m, lambda row: row.points) for part in parts]),
-                        centre_m=mean_interval([_mean(part, _centre_m, lambda row: row.centres) for part in parts]),
+                        points_m=mean_interval(
+                            [_mean(part, _points_m, lambda row: row.points) for part in parts], alike=alike
+                        ),
+                        centre_m=mean_interval(
+                            [_mean(part, _centre_m, lambda row: row.centres) for part in parts], alike=alike
+                        ),
                     )
                 )
     return spans

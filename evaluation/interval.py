@@ -15,22 +15,22 @@ class Interval:
 
     mean: float
     half_width: float | None
-    """Half of the 95 % confidence interval of the mean; None for a single value."""
+    """Half of the 95 % confidence interval of the mean; None for a single value, or recordings of several kinds."""
     count: int
     """Values that the mean is of."""
 
 
-def mean_interval(values: Sequence[float | int | None]) -> Interval | None:
-    """The mean of the values that are there, with its confidence interval; None without any.
+def mean_interval(values: Sequence[float | int | None], *, alike: bool = True) -> Interval | None:
+    """The mean of the values that are there, with its confidence interval if they are `alike`; None without any.
 
     The interval is mean +- t s / sqrt(n): s the standard deviation of the n values, t the 97.5 % quantile of Student's
-    distribution with n - 1 degrees of freedom. It is one for the mean over recordings of the same kind; of a share it
-    may reach beyond 0 and 1.
+    distribution with n - 1 degrees of freedom. It is one for the mean over recordings of the same kind (`alike`); of a
+    share it may reach beyond 0 and 1.
     """
     known = np.array([value for value in values if value is not None], float)
     if not len(known):
         return None
     half_width = None
-    if len(known) > 1:
+    if alike and len(known) > 1:
         half_width = float(stats.t.ppf((1 + LEVEL) / 2, len(known) - 1) * stats.sem(known))
     return Interval(mean=float(known.mean()), half_width=half_width, count=len(known))

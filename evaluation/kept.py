@@ -7,7 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from algorithm.pipeline import solve
-from algorithm.settings import Preset, Settings, preset_settings
+from algorithm.settings import Preset, Settings
+from evaluation.methods import settings_of
+from evaluation.outcome import FAILURES, code_digest
+from recording.atomic import whole_file
 from recording.errors import InputError
 from recording.motions import Motions
 from recording.parquet import load_motions, save_motions
@@ -20,13 +23,14 @@ from simulator.simulate import prepared, write_simulation
 
 Job = tuple[str, Preset]
 """A scene, and what to solve it with."""
-FAILURES = (InputError, ArithmeticError, LookupError, MemoryError, RuntimeError, ValueError)
-"""What a solver may end with on a recording that it cannot deal with."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Kept:
-    """A folder of recordings `<scene>/`, each with its motions `<scene>/motions_<preset>.parquet`."""
+    """A folder of recordings `<scene>/`, each with its motions `<scene>/motions_<preset>.parquet`.
+
+    Beside the motions stands the digest of the code that made them, `<scene>/motions_<preset>.code`.
+    """
 
     folder: Path
     size: str | None = None
@@ -61,16 +65,21 @@ class Kept:
     def motions(self, scene: str, preset: Preset) -> Motions:
         """The motions of a scene's recording under a preset, solved unless the folder holds them.
 
-        Motions made of another recording, under other settings or by another version are made again.
+        Motions made of another recording, under other settings, by another version or other code are made again.
         """
         recording = self.recording(scene)
         settings = settings_of(recording, preset)
         place = self.motions_path(scene, preset)
-        if place.is_file():
+        maker, code = place.with_suffix(".code"), code_digest()
+        if place.is_file() and maker.is_file() and maker.read_text(encoding="utf-8") == code:
             found = load_motions(place)
             if _made_so(found, recording, settings):
                 return found
-        save_motions(solve(recording, settings), place, overwrite=True)
+        motions = solve(recording, settings)
+        maker.unlink(missing_ok=True)  # So that no interruption leaves it beside motions of other code.
+        save_motions(motions, place, overwrite=True)
+        with whole_file(maker) as partial:
+            partial.write_text(code, encoding="utf-8")
         return load_motions(place)
 
     def motions_path(self, scene: str, preset: Preset) -> Path:
@@ -102,11 +111,6 @@ class _Solving:
             yield self.job, " ".join(f"{type(error).__name__}: {error}".split())
         else:
             yield self.job, None
-
-
-def settings_of(recording: Recording, preset: Preset) -> Settings:
-    """The settings of a preset for a recording, whose scene may state the paper's."""
-    return preset_settings(preset, of_scene=(recording.metadata.scene or {}).get("paper"))
 
 
 def _made_so(motions: Motions, recording: Recording, settings: Settings) -> bool:

@@ -1,7 +1,8 @@
 """What one method reaches on one recording, kept in a folder and used again while it holds."""
 
 import hashlib
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -24,18 +25,14 @@ from recording.store import load_recording
 from recording.version import VERSION
 from recording.visibility import Visibility, visibility_of
 
-FAILURES = (
-    InputError,
-    ArithmeticError,
-    LookupError,
-    MemoryError,
-    OSError,
-    RuntimeError,
-    TypeError,
-    ValueError,
-    cv2.error,
-)
-"""What a method may end with on a recording that it cannot deal with; it does not stop the others."""
+FAILURES = (ArithmeticError, MemoryError, OSError, RuntimeError, ValueError, cv2.error)
+"""What a method may end with on a recording that it cannot deal with; it does not stop the others.
+
+InputError and LinAlgError are ValueErrors, ARPACK's errors are RuntimeErrors. Anything else is a mistake of ours.
+"""
+_NUMBERED = re.compile(r"[-_]\d+$")
+_EXACT = "ideal"
+"""The sensor that needs no mention."""
 
 
 class MadeOf(Frozen):
@@ -72,11 +69,19 @@ class Outcome(Frozen):
     name: str
     """As the recording calls itself."""
     seed: int | None
+    sensor: str | None
+    """Preset of the simulated sensor."""
     method: str
     made_of: MadeOf
     scores: Scores | None = None
     by_length: tuple[HiddenLength, ...] = ()
     failure: str | None = None
+
+    @property
+    def group(self) -> str:
+        """The kind of recording: its name without the number that a data set gives it, `/`, sensor unless `ideal`."""
+        kind = _NUMBERED.sub("", self.name)
+        return kind if self.sensor in (None, _EXACT) else f"{kind}/{self.sensor}"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -120,10 +125,12 @@ class Contest:
 
     def _made(self, method: str, subject: "_Subject", folder: Path, made_of: MadeOf) -> Outcome:
         metadata = subject.recording.metadata
+        sensor = (metadata.sensor or {}).get("preset")
         outcome = Outcome(
             recording=self.label,
             name=metadata.name or self.place.resolve().name,
             seed=metadata.seed,
+            sensor=None if sensor is None else str(sensor),
             method=method,
             made_of=made_of,
         )
@@ -152,6 +159,11 @@ class _Subject:
     @cached_property
     def visibility(self) -> Visibility:
         return visibility_of(self.recording)
+
+
+def one_group(outcomes: Iterable[Outcome]) -> bool:
+    """Whether all are of one kind of recording, so that a mean over them has an interval."""
+    return len({outcome.group for outcome in outcomes}) <= 1
 
 
 def code_digest() -> str:

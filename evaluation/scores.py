@@ -136,7 +136,7 @@ def completion_by_length(evidence: Evidence) -> list[LengthRow]:
     surfaces = hidden_surfaces(evidence.recording, evidence.motions, evidence.visibility, evidence.motion_of_object)
     if surfaces is None:
         return []
-    return by_hidden_length(surfaces, _point_errors(evidence), _centre_errors(evidence))
+    return by_hidden_length(surfaces, hidden_points(evidence), _centre_errors(evidence))
 
 
 def _content(evidence: Evidence) -> Scores:
@@ -214,7 +214,7 @@ def _completion(evidence: Evidence) -> Scores:
     motion_of = evidence.motion_of_object
     surfaces = hidden_surfaces(evidence.recording, evidence.motions, evidence.visibility, motion_of)
     centre = _centre_errors(evidence).error_m
-    points = _point_errors(evidence)
+    points = hidden_points(evidence)
     hidden = surfaces if surfaces is not None and len(surfaces.area) else None
     return {
         "hidden_object_frames": len(hidden.area) if hidden is not None else None,
@@ -238,7 +238,8 @@ def _error_statistics(error_m: np.ndarray) -> Scores:
     }
 
 
-def _point_errors(evidence: Evidence) -> PointErrors | None:
+def hidden_points(evidence: Evidence) -> PointErrors | None:
+    """The errors of the completed points of hidden objects; None without meshes."""
     return point_errors(evidence.recording, evidence.motions, evidence.observations, evidence.visibility)
 
 

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from algorithm.settings import Preset
-from evaluation.kept import Kept, settings_of
+from evaluation.kept import Kept
+from evaluation.methods import settings_of
 from evaluation.paper_rows import PAPER, PaperRow
 from evaluation.scores import Scores, scores
 from recording.checks import nearest_name

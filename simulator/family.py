@@ -16,10 +16,9 @@ from simulator.body import body_names
 from simulator.body_name import BodyName
 from simulator.occlusion import OcclusionWish
 from simulator.path import FASTEST_WALK
-from simulator.recorded_crowd import RecordedCrowd
+from simulator.recorded_crowd import RecordedCrowd, crowd_in
 from simulator.sensor import Ideal, Sensor
 from simulator.things import Positive
-from simulator.trajectory_rows import file_inside
 
 DEVELOPMENT_SEEDS = range(1, 1000)
 """Seeds to develop with."""
@@ -168,7 +167,7 @@ def family_names() -> list[str]:
 def load_family(name_or_path: str | Path) -> Family:
     """The family of that name among those that come with the program, or in that TOML file.
 
-    A recorded crowd's file is known by its full path from then on, wherever the family goes.
+    A recorded crowd's file is looked for beside the family's, and known by its content from then on.
     """
     text = str(name_or_path)
     if text in family_names():
@@ -180,5 +179,4 @@ def load_family(name_or_path: str | Path) -> Family:
     family = validated(Family, toml_document(place), source=str(place))
     if family.crowd is None:
         return family
-    crowd = family.crowd.model_copy(update={"file": str(file_inside(place.parent, family.crowd.file))})
-    return family.model_copy(update={"crowd": crowd})
+    return family.model_copy(update={"crowd": crowd_in(place.parent, family.crowd)})

@@ -1,8 +1,6 @@
 """Recorded people as the crowd of a random scene: only what stands before them is left to choose."""
 
 from dataclasses import replace
-from functools import lru_cache
-from pathlib import Path
 
 import numpy as np
 from jaxtyping import Float
@@ -12,7 +10,7 @@ from simulator.family_drawing import Walks
 from simulator.family_setting import Setting
 from simulator.recorded_crowd import RecordedCrowd, crowd_tracks, recorded_walks
 from simulator.silhouette import silhouettes
-from simulator.tracks import STEP_S, Tracks
+from simulator.tracks import STEP_S
 
 
 def recorded_setting(setting: Setting, crowd: RecordedCrowd, generator: np.random.Generator) -> tuple[Setting, Walks]:
@@ -25,7 +23,7 @@ def recorded_setting(setting: Setting, crowd: RecordedCrowd, generator: np.rando
         obstacles_m=people.obstacle_clearance_m,
     )
     wanted = crowd.model_copy(update={"people": people.count})
-    places = recorded_walks(wanted, _tracks(wanted), around, generator=generator)
+    places = recorded_walks(wanted, crowd_tracks(wanted), around, generator=generator)
     numbers = np.array([silhouettes().bodies.index(name) for name in people.bodies])
     walks = Walks(
         place=_at_moments(setting, places),
@@ -33,12 +31,6 @@ def recorded_setting(setting: Setting, crowd: RecordedCrowd, generator: np.rando
         phase=np.round(generator.uniform(0.0, 1.0, len(places)), 3),
     )
     return replace(setting, people=len(places)), walks
-
-
-@lru_cache(maxsize=2)
-def _tracks(crowd: RecordedCrowd) -> Tracks:
-    """Everybody in the file, read once in a process."""
-    return crowd_tracks(crowd, Path(crowd.file).parent)
 
 
 def _at_moments(setting: Setting, places: Float[np.ndarray, "walk sample 2"]) -> Float[np.ndarray, "walk time 2"]:

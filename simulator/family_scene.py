@@ -109,10 +109,11 @@ def _refusal(setting: Setting, seed: int, nearest: Foretold | None) -> str:
     family, wish = setting.family, setting.family.occlusion
     name = f"family {family.name!r}, seed {seed}"
     if nearest is None or wish is None:
+        who, room = (setting.people, ", or raise 'people.depth_m'") if family.crowd is None else ("recorded", "")
         return (
-            f"{name}: expected {setting.people} people who keep {family.people.clearance_m:g} m apart and clear of "
+            f"{name}: expected {who} people who keep {family.people.clearance_m:g} m apart and clear of "
             f"{len(setting.kinds)} obstacles, found none in {_ROUNDS * _CROWDS} crowds: lower 'people.count', "
-            "'people.clearance_m' or the obstacles' counts and widths, or raise 'people.depth_m'"
+            f"'people.clearance_m' or the obstacles' counts and widths{room}"
         )
     share = "" if wish.hidden_share is None else f" and {wish.hidden_share:g} hidden"
     return (

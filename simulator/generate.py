@@ -1,6 +1,7 @@
 """A data set of random scenes: a family's recordings under seeds in a row, and the manifest that lists them."""
 
 import time
+from collections import Counter
 from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import dataclass
@@ -56,11 +57,16 @@ def generate(order: Order, *, seeds: Sequence[int], workers: int = 1, backend: B
     """Make the recordings of the seeds, each whole or not at all, then the manifest.
 
     A recording that is there already is kept; one of another scene in its place is an error. A seed that the family
-    has no scene for is left out, the others are made. Workers are processes, each of which makes whole recordings;
+    has no scene for is left out, the others are made; a sensor, size or crowd that none can have is an error before
+    any is drawn. Workers are processes, each of which makes whole recordings;
     their number changes no byte.
     """
     if not seeds or min(seeds) < 0:
         raise InputError(f"expected at least one seed, and none below 0, got {list(seeds)[:3]}")
+    seed, times = Counter(seeds).most_common(1)[0]
+    if times > 1:
+        raise InputError(f"expected every seed once, got seed {seed} {times} times: leave out what is repeated")
+    order.check()
     earlier, begun = _earlier(order), time.monotonic()
     with closing(reported(_batches(order, seeds, workers, find_backend(backend)), at_once=workers)) as steps:
         finished = (step for step in steps if isinstance(step, Listed | Refused))

@@ -31,14 +31,15 @@ Image = Float64[np.ndarray, "row column"]
 
 
 class Kinect1(Scanner):
-    """Pixels are the sensor's own, whose focal length is `focal_px`; the picture may have others.
+    """Pixels are those of a sensor whose focal length is `focal_px`; the picture may have others.
 
     So a picture of another size has the same noise in metres, and windows as wide as they are on the sensor.
     """
 
     preset: Literal["kinect1"]
     focal_px: PositiveFloat = 480.0
-    """Focal length of the sensor, f, in its own pixels."""
+    """Focal length of the sensor, f, in its own pixels: 480 as in Handa et al.'s simulated camera; a real one has about
+    580, whose steps of disparity are so much finer."""
     baseline_m: PositiveFloat = 0.075
     """The projector stands so far to the right of the camera, b, metres."""
     disparity_step_px: NonNegativeFloat = 0.125

@@ -1,6 +1,5 @@
 """People whose motion was captured: which BVH file, and where on the scene it is performed."""
 
-import hashlib
 from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, Any
@@ -8,9 +7,10 @@ from typing import Annotated, Any
 from pydantic import Field
 
 from recording.checks import Frozen, validated
-from recording.errors import InputError
 from simulator.bvh import Clip, read_bvh
-from simulator.trajectory_rows import file_inside
+from simulator.source_file import digest_of_file, file_inside
+
+_KIND = "BVH file"
 
 
 class Motion(Frozen):
@@ -45,13 +45,7 @@ def with_motion_files(document: dict[str, Any], *, place: Path) -> dict[str, Any
 def clip_of(motion: Motion) -> Clip:
     """The motion in the file; an `InputError` where the file is not the one that the scene was loaded with."""
     path = file_inside(Path(motion.folder), motion.file)
-    found = _digest(path)
-    if motion.sha256 not in ("", found):
-        raise InputError(
-            f"{path}: expected the file with the SHA-256 {motion.sha256}, got {found}: bring the file back, or "
-            "leave 'sha256' out to take this one"
-        )
-    return _clip(path, found)
+    return _clip(path, digest_of_file(path, kind=_KIND, wanted=motion.sha256))
 
 
 def _with_motion(person: Any, place: Path, number: int) -> Any:
@@ -61,15 +55,8 @@ def _with_motion(person: Any, place: Path, number: int) -> Any:
     given = validated(Motion, person["motion"], source=f"{place}: people.{number}.motion")
     found = given.model_copy(update={"folder": str(place.parent)})
     clip_of(found)
-    digest = _digest(file_inside(place.parent, given.file))
+    digest = digest_of_file(file_inside(place.parent, given.file), kind=_KIND)
     return person | {"motion": found.model_copy(update={"sha256": digest})}
-
-
-def _digest(path: Path) -> str:
-    try:
-        return hashlib.sha256(path.read_bytes()).hexdigest()
-    except OSError as error:
-        raise InputError(f"{path}: expected a readable BVH file, got: {error.strerror}") from None
 
 
 @lru_cache(maxsize=16)

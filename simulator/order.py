@@ -14,6 +14,9 @@ from simulator.backend import Backend
 from simulator.family import DEVELOPMENT_SEEDS, REPORTING_SEEDS, Family
 from simulator.family_scene import drawn_scene
 from simulator.pictures import pictures
+from simulator.recorded_crowd import crowd_tracks
+from simulator.scene import Scene
+from simulator.sensor import sensor_named
 from simulator.simulate import Simulation, changed_scene, made_ready, picture_size
 
 
@@ -31,11 +34,30 @@ class Order:
     overwrite: bool = False
     """Whether recordings that are there are made again."""
 
+    def pixels(self) -> tuple[int, int] | None:
+        """Width and height in place of the family's own."""
+        own = self.family.camera.width, self.family.camera.height
+        return None if self.size is None else picture_size(self.size, own)
+
+    def check(self) -> None:
+        """Raise an InputError where no seed can have a recording: for its sensor, its size or the crowd's file."""
+        self.pixels()
+        if self.sensor is not None:
+            sensor_named(self.sensor)
+        if self.family.crowd is not None:
+            crowd_tracks(self.family.crowd)
+
+    def scene(self, seed: int) -> Scene:
+        """The scene of the seed as the family has it; an InputError where the family has none."""
+        return drawn_scene(self.family, seed).model_copy(update={"name": f"{self.family.name}-{seed:06d}"})
+
+    def ready(self, scene: Scene, seed: int) -> Simulation:
+        """The scene, which is that of the seed, as it was ordered and ready to be cast."""
+        return made_ready(changed_scene(scene, size=self.pixels(), frames=None, sensor=self.sensor), seed=seed)
+
     def simulation(self, seed: int) -> Simulation:
-        """The scene of the seed, ready to be cast; an InputError where the family has none."""
-        scene = drawn_scene(self.family, seed).model_copy(update={"name": f"{self.family.name}-{seed:06d}"})
-        pixels = None if self.size is None else picture_size(self.size, scene)
-        return made_ready(changed_scene(scene, size=pixels, frames=None, sensor=self.sensor), seed=seed)
+        """Both in one: the seed's scene, ready to be cast."""
+        return self.ready(self.scene(seed), seed)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,12 +103,12 @@ class Batch:
         """Each step, one recording after the other; who asks may be gone at any of them."""
         for seed in self.seeds:
             try:
-                simulation = self.order.simulation(seed)
+                scene = self.order.scene(seed)
             except InputError as error:
                 yield Refused(seed=seed, sentence=str(error))
                 continue
             yield Drawn()
-            yield from self._recorded(simulation)
+            yield from self._recorded(self.order.ready(scene, seed))
 
     def _recorded(self, simulation: Simulation) -> Iterator[Step]:
         place = self.order.folder / simulation.scene.name

@@ -4,6 +4,7 @@ What the settings leave open is chosen: the file's frame in which the scene begi
 the camera, and who of the people takes part.
 """
 
+from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -18,8 +19,9 @@ from simulator.body import body_names
 from simulator.body_name import BodyName
 from simulator.casting import Surroundings, Walks, cast_of
 from simulator.path import FASTEST_WALK
+from simulator.source_file import digest_of_file, file_inside
 from simulator.tracks import STEP_S, Tracks, tracks_of
-from simulator.trajectory_rows import METRES, beginning, file_inside, turned
+from simulator.trajectory_rows import METRES, beginning, turned
 from simulator.walk_record import RUN_OUT_S, walk_record
 
 _WINDOW_S = 1.0  # From one window that is tried to the next.
@@ -47,6 +49,12 @@ class RecordedCrowd(Frozen):
     """By how much the file's ground is turned about its origin, from x towards y, degrees; or it is chosen."""
     bodies: Annotated[tuple[BodyName, ...], Field(min_length=1)] = tuple(body_names())
     """Who they are, in turn."""
+    sha256: str = ""
+    """Digest of the file's content, filled in when the scene or family is loaded; one that is given must be the
+    file's."""
+    folder: str = Field(default=".", exclude=True)
+    """That of the scene's or family's file, filled in when that is loaded. No part of what a data set keeps: it says
+    nothing about the people."""
 
     @model_validator(mode="after")
     def _some(self) -> "RecordedCrowd":
@@ -55,9 +63,27 @@ class RecordedCrowd(Frozen):
         return self
 
 
-def crowd_tracks(crowd: RecordedCrowd, folder: Path) -> Tracks:
-    """Everybody in the crowd's file, which lies in the folder or below."""
-    return tracks_of(file_inside(folder, crowd.file), fps=crowd.fps, metres=METRES[crowd.unit])
+def crowd_in(folder: Path, crowd: RecordedCrowd) -> RecordedCrowd:
+    """The crowd whose file lies in the folder or below, with that folder and the digest of the file's content."""
+    found = crowd.model_copy(update={"folder": str(folder)})
+    return found.model_copy(update={"sha256": _path_and_digest(found)[1]})
+
+
+def crowd_tracks(crowd: RecordedCrowd) -> Tracks:
+    """Everybody in the crowd's file; an `InputError` where it is not the one that the crowd was loaded with."""
+    return _tracks(*_path_and_digest(crowd), fps=crowd.fps, metres=METRES[crowd.unit])
+
+
+def _path_and_digest(crowd: RecordedCrowd) -> tuple[Path, str]:
+    path = file_inside(Path(crowd.folder), crowd.file)
+    return path, digest_of_file(path, kind="text file of trajectories", wanted=crowd.sha256)
+
+
+@lru_cache(maxsize=2)
+def _tracks(path: Path, digest: str, *, fps: float, metres: float) -> Tracks:
+    """Everybody in the file, read once in a process while its content has the digest."""
+    del digest  # Only a part of what the answer is remembered by.
+    return tracks_of(path, fps=fps, metres=metres)
 
 
 def recorded_walks(
@@ -88,10 +114,10 @@ def recorded_walks(
     )
 
 
-def recorded_people(crowd: RecordedCrowd, folder: Path, around: Surroundings) -> list[dict[str, Any]]:
+def recorded_people(crowd: RecordedCrowd, around: Surroundings) -> list[dict[str, Any]]:
     """The crowd as the people of a scene's document; nothing is left to chance."""
     people = []
-    for number, walk in enumerate(recorded_walks(crowd, crowd_tracks(crowd, folder), around)):
+    for number, walk in enumerate(recorded_walks(crowd, crowd_tracks(crowd), around)):
         waypoints, times = walk_record(walk, step_s=STEP_S)
         body, phase = crowd.bodies[number % len(crowd.bodies)], round(number * _NEXT_PHASE % 1, 3)
         people.append({"body": body, "waypoints": waypoints, "times": times, "phase": phase})

@@ -18,7 +18,7 @@ from simulator.casting import Surroundings
 from simulator.juggling_scene import Juggler
 from simulator.motion_file import with_motion_files
 from simulator.occlusion import OcclusionWish
-from simulator.recorded_crowd import RecordedCrowd, recorded_people
+from simulator.recorded_crowd import RecordedCrowd, crowd_in, recorded_people
 from simulator.sensor import Ideal, Sensor
 from simulator.things import Ball, Obstacle, Person, Point, Positive
 from simulator.trajectory_file import with_recorded_walks
@@ -172,4 +172,4 @@ def _with_crowd(document: dict[str, Any], place: Path) -> dict[str, Any]:
     )
     crowd = validated(RecordedCrowd, document["crowd"], source=f"{place}: crowd")
     rest = {key: value for key, value in document.items() if key != "crowd"}
-    return rest | {"people": recorded_people(crowd, place.parent, around)}
+    return rest | {"people": recorded_people(crowd_in(place.parent, crowd), around)}

@@ -21,6 +21,10 @@ from simulator.structured_light import StructuredLight
 from simulator.tof import TimeOfFlight
 from simulator.view import View
 
+_NOISE = 1
+"""Sets the noise apart from all that a seed draws by itself: to numpy (seed, 0) is the same as the seed alone, with
+which scenes are drawn and varied, and only a last number other than 0 makes another stream of it."""
+
 
 @runtime_checkable
 class SensorModel(Protocol):
@@ -71,7 +75,7 @@ def sensed_frame(exact: Frame, view: View, sensor: SensorModel, *, number: int) 
     """
     if isinstance(sensor, Ideal):
         return exact
-    sensed = sensor.sensed(exact, view, np.random.default_rng((sensor.seed, number)))
+    sensed = sensor.sensed(exact, view, np.random.default_rng((sensor.seed, number, _NOISE)))
     return replace(exact, depth=sensed.depth, clean_depth=exact.depth, reason=sensed.reason)
 
 

@@ -89,7 +89,7 @@ def prepared(
     preset; what is None is as the scene says.
     """
     given = scene if isinstance(scene, Scene) else load_scene(scene)
-    pixels = picture_size(size, given) if isinstance(size, str) else size
+    pixels = picture_size(size, (given.camera.width, given.camera.height)) if isinstance(size, str) else size
     changed = changed_scene(varied(given, seed), size=pixels, frames=frames, sensor=sensor)
     return made_ready(changed, seed=seed)
 
@@ -160,12 +160,12 @@ def write_simulation(
         write_metadata(partial, simulation.described(tallies))
 
 
-def picture_size(text: str, scene: Scene) -> tuple[int, int]:
+def picture_size(text: str, own: tuple[int, int]) -> tuple[int, int]:
     """Width and height in pixels that `640x480`, or `2x` for twice the scene's own, stands for."""
     if match := re.fullmatch(r"([1-9]\d*)x([1-9]\d*)", text):
         return int(match[1]), int(match[2])
     if match := re.fullmatch(r"([1-9]\d*)x", text):
-        return int(match[1]) * scene.camera.width, int(match[1]) * scene.camera.height
+        return int(match[1]) * own[0], int(match[1]) * own[1]
     raise InputError(f"expected a picture size such as 640x480 or 2x, got {text!r}")
 
 

@@ -89,8 +89,9 @@ def social_force_walks(
     """Everybody's centre at 0, `step_s`, ... up to `seconds` at least, metres; NaN for nobody.
 
     People try to keep `clearance_m` between their centres, and `obstacle_clearance_m` from a centre to a disc's edge;
-    where there is no room they fail, and `crowds.clearances` tells. Everybody sets out at the own speed, straight to
-    the goal or round what stands before it. The same crowd walks the same way, alone or among other crowds.
+    where there is no room they fail, so whoever must be sure measures it (`clearance.smallest_clearance`). Everybody
+    sets out at the own speed, straight to the goal or round what stands before it. The same crowd walks the same way,
+    alone or among other crowds.
     """
     _check(crowds, seconds, step_s)
     wishes = _wishes(crowds, clearance_m, obstacle_clearance_m)

@@ -1,8 +1,9 @@
 """Two cameras beside one another: depth by the shift between their pictures.
 
-The error of depth is z^2 / (f b) times that of the shift (Intel, "Best-known methods for tuning RealSense D400 depth
-cameras"; Gallup et al., "Variable baseline/resolution stereo", CVPR 2008). Windows fatten what is in front
-(Hirschmueller, Innocent and Garibaldi, "Real-time correlation-based stereo vision", IJCV 2002).
+The error of depth is z^2 / (f b) times that of the shift (Intel, "Best-known methods for tuning Intel RealSense D400
+depth cameras for best performance"; Gallup et al., "Variable baseline/resolution stereo", CVPR 2008). Windows fatten
+what is in front (Hirschmueller, Innocent and Garibaldi, "Real-time correlation-based stereo vision with reduced border
+errors", IJCV 2002).
 """
 
 from typing import Annotated, Literal

@@ -8,7 +8,8 @@ from pydantic import Field
 
 from recording.checks import Frozen, validated
 from recording.errors import InputError
-from simulator.trajectory_rows import METRES, Row, beginning, by_frames, file_inside, rows_of, smoothed, turned
+from simulator.source_file import file_inside
+from simulator.trajectory_rows import METRES, Row, beginning, by_frames, rows_of, smoothed, turned
 from simulator.walk_record import Times, Waypoints, even_knots, recorded
 
 

@@ -24,14 +24,6 @@ Row = tuple[int, tuple[float, float, float, float]]
 """The line's number in the file; id, frame, x and y."""
 
 
-def file_inside(folder: Path, file: str) -> Path:
-    """The file's path; refused where it leads out of the folder."""
-    path = (folder / file).resolve()
-    if not path.is_relative_to(folder.resolve()):
-        raise InputError(f"file {file!r}: expected one in the scene's folder {folder} or below: copy it there")
-    return path
-
-
 def rows_of(path: Path) -> list[Row]:
     """The rows of all people: one at least."""
     try:

@@ -1,6 +1,9 @@
 """The command line: the whole path, and one clear line with exit status 2 for what is wrong."""
 
 import json
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import cv2
@@ -10,6 +13,7 @@ from worlds import recorded, small_camera, sphere
 
 import unocclude
 
+ROOT = Path(__file__).parent.parent
 SCENE = """
 name = "small"
 frames = 12
@@ -150,6 +154,11 @@ WRONG = {
     "nothing to compare": ("compare", "-o", "{empty}/x"),
     "no such method": ("compare", "{recording}", "--methods", "default,trackr", "-o", "{empty}/x"),
     "motions without a name": ("compare", "{recording}", "--motions", "{empty}", "-o", "{empty}/x"),
+    "motions under one name twice": (
+        *("compare", "{recording}", "--motions", "mine={empty}", "--motions", "mine={recording}"),
+        *("-o", "{empty}/x"),
+    ),
+    "no method twice": ("compare", "{recording}", "--methods", "tracker,tracker", "-o", "{empty}/x"),
     "motions that are not there": ("compare", "{recording}", "--motions", "mine={empty}", "-o", "{empty}/x"),
 }
 
@@ -173,6 +182,7 @@ def test_wrong_input_gets_one_line_and_status_2(
         "demo",
         "simulate",
         "generate",
+        "resense",
         "import",
         "solve",
         "evaluate",
@@ -199,3 +209,23 @@ def test_solves_help_lists_every_setting(capsys: pytest.CaptureFixture[str]) -> 
 def test_doctor_names_the_backend(capsys: pytest.CaptureFixture[str]) -> None:
     assert run("doctor") == 0
     assert "rendering backend: " in capsys.readouterr().out
+
+
+def test_ctrl_c_while_importing_is_one_line_and_status_130(tmp_path: Path) -> None:
+    (tmp_path / "cyclopts.py").write_text("raise KeyboardInterrupt", encoding="utf-8")  # As if pressed right then.
+    environment = os.environ | {"PYTHONPATH": str(tmp_path)}
+    ended = _ended("-m", "unocclude", "doctor", env=environment)
+    assert (ended.returncode, ended.stdout) == (130, "")
+    assert ended.stderr == "unocclude: interrupted; nothing half-written is left\n"
+
+
+def test_a_benchmark_ends_as_a_command_does(tmp_path: Path) -> None:
+    ended = _ended("benchmarks/flow.py", "--middlebury", str(tmp_path))
+    assert (ended.returncode, ended.stdout) == (2, "")
+    assert ended.stderr.startswith(f"flow.py: {tmp_path}: expected folders")
+    assert ended.stderr.count("\n") == 1
+
+
+def _ended(*arguments: str, env: dict[str, str] | None = None) -> subprocess.CompletedProcess[str]:
+    """How a Python program of this project ended."""
+    return subprocess.run([sys.executable, *arguments], cwd=ROOT, env=env, capture_output=True, text=True, check=False)

@@ -1,4 +1,4 @@
-"""The layers: `recording` knows nobody, `simulator` and `algorithm` only `recording`, `evaluation` everybody."""
+"""The layers: `recording` knows nobody, `simulator` and `algorithm` only it, `evaluation` these, `commands` all."""
 
 import ast
 from pathlib import Path
@@ -11,6 +11,7 @@ MAY_IMPORT = {
     "simulator": {"recording", "scenes"},
     "algorithm": {"recording"},
     "evaluation": {"recording", "simulator", "algorithm"},
+    "commands": {"recording", "simulator", "algorithm", "evaluation"},
 }
 LAYERS = {*MAY_IMPORT, "scenes", "unocclude"}
 

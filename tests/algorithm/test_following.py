@@ -104,6 +104,13 @@ def test_of_points_that_meet_the_oldest_goes_on() -> None:
     assert len(np.unique(cells, axis=0)) == len(cells)
 
 
+def test_who_leaves_the_picture_takes_nobody_along() -> None:
+    depths = depths_of([plane(lambda _: 3.0)], CAMERA, 2)[0]
+    found = follow(depths, there_and_back(depths, -0.7))
+    ends = found.column_row[(found.frame == 1) & (found.first_frame[found.trajectory] == 0)]
+    assert len(ends) == 48 * 64  # All places are within reach of the border's returns, and no two in one cell.
+
+
 def test_what_comes_into_view_begins_new_trajectories() -> None:
     depths = patch(5, frames=2)
     depths[1][30:34, 40:44] = 2.0

@@ -3,16 +3,17 @@
 import csv
 import json
 import os
+import re
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from known import crossing, masks_only, perfect
+from known import crossing, empty, masks_only, perfect
 from scipy import stats
 
 from evaluation import outcome as outcome_module
-from evaluation.compare import compared, group_of, labelled
+from evaluation.compare import compared, labelled
 from evaluation.compare_tables import comparison_document, comparison_text, intervals_of, write_comparison
 from evaluation.hidden_time import spans_of
 from evaluation.interval import mean_interval
@@ -22,6 +23,7 @@ from evaluation.scores import evaluate
 from recording.errors import InputError
 from recording.motions import Making
 from recording.parquet import load_motions, save_motions
+from recording.recording import Recording
 from recording.store import save_recording
 
 
@@ -120,11 +122,11 @@ def counted_calls(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     calls: list[str] = []
     real = METHODS["tracker"]
 
-    def motions(recording):
+    def solver(recording, settings):
         calls.append("tracker")
-        return real.motions(recording)
+        return real.solver(recording, settings)
 
-    changed = {**METHODS, "tracker": Method(settings=real.settings, motions=motions)}
+    changed = {**METHODS, "tracker": replace(real, solver=solver)}
     monkeypatch.setattr(outcome_module, "METHODS", changed)
     return calls
 
@@ -135,10 +137,24 @@ def test_a_method_that_fails_is_told_and_does_not_stop_the_rest(tmp_path: Path) 
     assert [one.failure is None for one in outcomes] == [True, False, False]
     text = comparison_text(outcomes)
     assert "true_flow failed on masks: InputError: " in text
-    assert "true_flow (1 failed)" in text
+    assert counts_in(text) == {"tracker": ["1"], "true_flow (1 failed)": ["0"], "true_segments (1 failed)": ["0"]}
     document = comparison_document(outcomes)
     assert [entry["method"] for entry in document["failures"]] == ["true_flow", "true_segments"]
     write_comparison(outcomes, tmp_path / "out")
+
+
+def test_a_mean_over_fewer_recordings_says_so(places: list[Path], tmp_path: Path) -> None:
+    first, second = compared(places, tmp_path, methods=["tracker"])
+    broken = [one.model_copy(update={"method": "mine"}) for one in (first, second)]
+    broken[1] = broken[1].model_copy(update={"scores": None, "by_length": (), "failure": "ValueError: too few"})
+    assert counts_in(comparison_text([first, second, *broken])) == {"tracker": ["2"], "mine (1 failed)": ["1"]}
+
+
+def counts_in(text: str) -> dict[str, list[str]]:
+    """The column `n` of the first table, by the row's first column."""
+    rows = [re.split(r" {2,}", line.strip()) for line in text.split("\n\n")[1].splitlines()]
+    assert rows[0][:2] == ["method", "n"]
+    return {row[0]: row[1:2] for row in rows[1:]}
 
 
 def test_several_processes_say_the_same_as_one(places: list[Path], tmp_path: Path) -> None:
@@ -173,12 +189,66 @@ def test_everything_is_written_and_can_be_read(places: list[Path], tmp_path: Pat
 
 def test_intervals_are_over_the_recordings_of_a_group(places: list[Path], tmp_path: Path) -> None:
     outcomes = compared(places, tmp_path, methods=["tracker"])
-    assert {group_of(one) for one in outcomes} == {"crossing"}
+    assert {one.group for one in outcomes} == {"crossing"}
     found = intervals_of(outcomes)["coverage"]
     assert found is not None
     assert found.count == 2
+    assert found.half_width is not None
+    assert all(span.recall.half_width is not None for span in spans_of(outcomes) if span.recall.count > 1)
     renamed = outcomes[1].model_copy(update={"name": "crowded-000123"})
     assert list(comparison_document([outcomes[0], renamed])["groups"]) == ["crossing", "crowded", "all recordings"]
+
+
+def test_recordings_of_several_kinds_have_means_without_intervals(places: list[Path], tmp_path: Path) -> None:
+    first, second = compared(places, tmp_path, methods=["tracker"])
+    mixed = [first, second.model_copy(update={"name": "crowded-1"})]
+    found = intervals_of(mixed)["coverage"]
+    assert found is not None
+    assert (found.count, found.half_width) == (2, None)
+    assert all(span.recall.half_width is None for span in spans_of(mixed))
+    assert "±" in comparison_text([first, second])
+    assert "±" not in comparison_text(mixed)
+
+
+def test_another_sensor_makes_another_group(tmp_path: Path) -> None:
+    recording = crossing()
+    for sensor in (None, "ideal", "tof"):
+        stated = {"name": "crowded-1000", "sensor": {"preset": sensor} if sensor else None}
+        seen = replace(recording, metadata=recording.metadata.model_copy(update=stated))
+        save_recording(seen, tmp_path / f"{sensor}")
+    places = [tmp_path / name for name in ("None", "ideal", "tof")]
+    outcomes = compared(places, tmp_path / "out", methods=["tracker"])
+    assert [one.group for one in outcomes] == ["crowded", "crowded", "crowded/tof"]
+
+
+def test_only_oracles_see_the_truth_and_paper_is_told_its_epsilons() -> None:
+    recording = crossing()
+    stated = recording.metadata.model_copy(update={"scene": {"paper": {"eps5": 7.0}}})
+    recording = replace(recording, metadata=stated)
+    assert [name for name, method in METHODS.items() if method.sees_truth] == [
+        "true_flow",
+        "true_segments",
+        "true_links",
+    ]
+    for method in METHODS.values():
+        calls: list[tuple[Recording, dict]] = []
+        watched(method, calls).motions(recording)
+        ((seen, settings),) = calls
+        known = [seen.truth, seen.xray, seen.metadata.scene, seen.metadata.objects, seen.frames[0].labels]
+        assert [fact is not None for fact in known] == [method.sees_truth] * len(known)
+        assert settings == method.settings(recording)
+        assert seen.digest() == recording.digest()
+    assert METHODS["paper"].settings(recording)["eps5"] == 7
+
+
+def watched(method: Method, calls: list[tuple[Recording, dict]]) -> Method:
+    """The method, of which is written down what its solver is given; it finds nothing."""
+
+    def solver(recording, settings):
+        calls.append((recording, settings))
+        return empty()
+
+    return replace(method, solver=solver)
 
 
 def test_recordings_are_told_apart_by_their_folders(places: list[Path]) -> None:
@@ -205,6 +275,7 @@ WRONG = {
     "no recording": ({"recordings": [Path("nowhere")]}, "nowhere: expected a recording or a data set"),
     "one twice": ({"recordings": ["a/crossing", "a/crossing"]}, "every recording once"),
     "unknown method": ({"methods": ["trackr"]}, "unknown method 'trackr', did you mean 'tracker'"),
+    "one method twice": ({"methods": ["tracker", "default", "tracker"]}, "every method once, got 'tracker'"),
     "no method": ({"methods": []}, "at least one, got none"),
     "our name": ({"elsewhere": {"tracker": Path("answers")}}, "'tracker' is one of our methods"),
     "no file": ({"elsewhere": {"mine": Path("answers")}}, "--motions mine: expected"),

@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from evaluation.kept import Kept, settings_of
+from evaluation.kept import Kept
+from evaluation.methods import settings_of
 from recording.errors import InputError
 from recording.motions import Making, Motions
 from recording.parquet import load_motions, save_motions
@@ -53,6 +54,20 @@ def test_motions_of_another_recording_version_or_settings_are_made_again(
     assert found.making.version == good.making.version
     assert found.making.settings == settings_of(kept.recording("house"), "default").model_dump()
     np.testing.assert_array_equal(found.position, good.position)
+
+
+def test_motions_of_other_code_are_made_again(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    place = small(folder).motions_path("house", "default")
+    before = place.stat().st_mtime_ns
+    monkeypatch.setattr("evaluation.kept.code_digest", lambda: "other code")
+    small(folder).motions("house", "default")
+    after = place.stat().st_mtime_ns
+    assert after > before
+    small(folder).motions("house", "default")
+    assert place.stat().st_mtime_ns == after
+    monkeypatch.undo()
+    small(folder).motions("house", "default")
+    assert place.stat().st_mtime_ns > after
 
 
 def test_a_recording_of_another_size_is_refused_and_replaced_only_when_asked_for(folder: Path, tmp_path: Path) -> None:

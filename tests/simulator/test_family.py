@@ -10,6 +10,7 @@ from recording.errors import InputError
 from simulator.family import DEVELOPMENT_SEEDS, REPORTING_SEEDS, Family, family_names, load_family
 from simulator.family_scene import drawn_scene
 from simulator.family_setting import drawn_setting
+from simulator.recorded_crowd import crowd_tracks
 
 SMALL: dict[str, Any] = {"name": "small", "frames": 30, "people": {"count": 2}}
 A_WALL = {"walls": {"count": 1, "width_m": [0.8, 2], "height_m": 2.2}}
@@ -90,6 +91,48 @@ def test_a_wish_that_no_scene_meets_is_refused_with_the_nearest_found() -> None:
     )
     with pytest.raises(InputError, match=r"expected holes of 16 frames and 0.5 hidden by people, the nearest found"):
         drawn_scene(family, 1)
+
+
+def with_walks(folder: Path, content: str = "1 0 0 0\n1 9 1 0\n") -> Path:
+    """A family of recorded people in the folder, its crowd's file in one below."""
+    (folder / "sub").mkdir(parents=True)
+    (folder / "sub" / "walks.txt").write_text(content, encoding="utf-8")
+    path = folder / "yard.toml"
+    path.write_text('name = "yard"\n[people]\ncount = 1\n[crowd]\nfile = "sub/walks.txt"\nfps = 10\n', encoding="utf-8")
+    return path
+
+
+def test_a_recorded_crowd_is_known_by_its_content_wherever_it_lies(tmp_path: Path) -> None:
+    here, there = (load_family(with_walks(tmp_path / name)) for name in ("here", "there"))
+    other = load_family(with_walks(tmp_path / "other", "1 0 0 0\n1 9 2 0\n"))
+    documents = [family.model_dump(mode="json") for family in (here, there, other)]
+    assert documents[0]["crowd"]["file"] == "sub/walks.txt"
+    assert documents[0] == documents[1]
+    assert documents[0] != documents[2]
+
+
+def test_a_crowds_file_that_has_changed_or_is_missing_is_refused_in_one_line(tmp_path: Path) -> None:
+    family = load_family(with_walks(tmp_path / "a"))
+    assert family.crowd is not None
+    (tmp_path / "a" / "sub" / "walks.txt").write_text("1 0 0 0\n1 9 3 0\n", encoding="utf-8")
+    with pytest.raises(
+        InputError, match=r"walks\.txt: expected the file with the SHA-256 .* leave 'sha256' out"
+    ) as one:
+        crowd_tracks(family.crowd)
+    (tmp_path / "a" / "sub" / "walks.txt").unlink()
+    with pytest.raises(InputError, match=r"walks\.txt: expected a readable text file of trajectories") as two:
+        load_family(tmp_path / "a" / "yard.toml")
+    assert "\n" not in f"{one.value}{two.value}"
+
+
+def test_a_family_built_in_python_looks_for_its_crowd_below_the_working_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with_walks(tmp_path / "a")
+    monkeypatch.chdir(tmp_path / "a")
+    family = family_of(crowd={"file": "sub/walks.txt", "fps": 10})
+    assert family.crowd is not None
+    assert len(crowd_tracks(family.crowd).tracks) == 1
 
 
 def test_a_negative_seed_is_refused() -> None:

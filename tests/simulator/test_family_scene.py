@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from recording.errors import InputError
 from recording.visibility import HIDDEN_BELOW
 from simulator.clearance import smallest_clearance
 from simulator.family import Family, load_family
@@ -124,18 +125,28 @@ def test_a_scene_of_no_family_is_written_as_if_there_were_no_wish() -> None:
     assert "occlusion" not in load_scene("wall").model_dump(mode="json")
 
 
-def test_a_family_may_have_recorded_people_with_obstacles_made_for_them(tmp_path: Path) -> None:
+def yard(folder: Path, more: str) -> Family:
+    """A family of recorded people."""
     lines = [f"{person} {frame} {0.1 * frame - 3} {1.2 * person}" for person in range(4) for frame in range(80)]
-    (tmp_path / "walks.txt").write_text("\n".join(lines), encoding="utf-8")
-    (tmp_path / "yard.toml").write_text(
-        'name = "yard"\nframes = 30\n[people]\ncount = [2, 3]\n[crowd]\nfile = "walks.txt"\nfps = 10\n'
-        "[obstacles]\ntrees = {count = 2, width_m = [0.3, 0.7], height_m = 2.5}\n"
-        '[occlusion]\nhole_frames = 6\nspread = 0.4\nby = "obstacles"\n',
+    (folder / "walks.txt").write_text("\n".join(lines), encoding="utf-8")
+    (folder / "yard.toml").write_text(
+        f'name = "yard"\nframes = 30\n[people]\ncount = [2, 3]\n[crowd]\nfile = "walks.txt"\nfps = 10\n{more}',
         encoding="utf-8",
     )
-    family = load_family(tmp_path / "yard.toml")
+    return load_family(folder / "yard.toml")
+
+
+def test_a_family_may_have_recorded_people_with_obstacles_made_for_them(tmp_path: Path) -> None:
+    trees = "[obstacles]\ntrees = {count = 2, width_m = [0.3, 0.7], height_m = 2.5}\n"
+    family = yard(tmp_path, trees + '[occlusion]\nhole_frames = 6\nspread = 0.4\nby = "obstacles"\n')
     scene = drawn_scene(family, 1)
     assert scene == drawn_scene(family, 1)
     assert 2 <= len(scene.people) <= 3
     assert len(scene.obstacles) == 2
     assert (foretold(cover_of(scene)).hole_median or 0) == pytest.approx(6, rel=0.5)
+
+
+def test_recorded_people_whom_no_obstacle_suits_are_refused_without_a_number_of_them(tmp_path: Path) -> None:
+    family = yard(tmp_path, "[obstacles]\ntrees = {count = 3, width_m = 9, height_m = 2.5}\n")
+    with pytest.raises(InputError, match=r"expected recorded people who keep 0\.6 m .* 3 obstacles, .* widths$"):
+        drawn_scene(family, 1)

@@ -200,6 +200,46 @@ def test_verify_says_what_is_wrong_with_which_recording(made: tuple[Path, Genera
     assert any(line.startswith("ok   feet slide: ") for line in lines)
 
 
+def test_a_data_set_of_recorded_people_goes_on_with_its_family_elsewhere(family: Path, tmp_path: Path) -> None:
+    crowd = '[crowd]\nfile = "walks.txt"\nfps = 10\n'
+    walks = [f"{person} {frame} {0.1 * frame - 3} {1.2 * person}" for person in range(4) for frame in range(60)]
+    for name in ("here", "there"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "tiny.toml").write_text(family.read_text(encoding="utf-8") + crowd, encoding="utf-8")
+        (tmp_path / name / "walks.txt").write_text("\n".join(walks), encoding="utf-8")
+    here, there = (ordered(tmp_path / name / "tiny.toml", tmp_path / "set") for name in ("here", "there"))
+    generate(here, seeds=[1])
+    assert generate(there, seeds=[1]).kept == 1
+    (tmp_path / "there" / "walks.txt").write_text("\n".join(walks[:-1]), encoding="utf-8")
+    with pytest.raises(InputError, match="expected a data set of the same family"):
+        generate(ordered(tmp_path / "there" / "tiny.toml", tmp_path / "set"), seeds=[2])
+    with pytest.raises(InputError, match=r"walks\.txt: expected the file with the SHA-256"):
+        generate(there, seeds=[2])
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"sensor": "kinect"}, "unknown sensor 'kinect': did you mean 'kinect1'"),
+        ({"size": "2.5x"}, "expected a picture size such as 640x480 or 2x, got '2.5x'"),
+    ],
+)
+def test_what_no_seed_can_have_is_refused_before_any_scene_is_drawn(
+    changes: dict[str, object], message: str, family: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawn: list[int] = []
+    monkeypatch.setattr("simulator.order.drawn_scene", lambda _, seed: drawn.append(seed))
+    with pytest.raises(InputError, match=message):
+        generate(ordered(family, tmp_path / "set", **changes), seeds=[1, 2])
+    assert not drawn
+    assert not (tmp_path / "set").exists()
+
+
+def test_a_seed_that_is_repeated_is_refused(family: Path, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="expected every seed once, got seed 3 2 times"):
+        generate(ordered(family, tmp_path), seeds=[3, 3])
+
+
 def test_no_seed_is_refused(family: Path, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="at least one seed"):
         generate(ordered(family, tmp_path), seeds=[])

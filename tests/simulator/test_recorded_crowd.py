@@ -9,7 +9,7 @@ import pytest
 from recording.errors import InputError
 from simulator.casting import Surroundings
 from simulator.crowds import Crowds
-from simulator.recorded_crowd import RecordedCrowd, crowd_tracks, recorded_walks
+from simulator.recorded_crowd import RecordedCrowd, crowd_in, crowd_tracks, recorded_walks
 from simulator.scene import CameraSpot, Scene, load_scene
 from simulator.simulate import prepared
 from simulator.social_force import social_force_walks
@@ -68,7 +68,7 @@ def nearest_m(walks: np.ndarray) -> float:
 def test_people_are_as_many_as_wanted_in_view_and_apart(folder: Path, seed: int | None) -> None:
     wanted = crowd(people=[3, 5])
     generator = None if seed is None else np.random.default_rng(seed)
-    walks = recorded_walks(wanted, crowd_tracks(wanted, folder), around(), generator=generator)
+    walks = recorded_walks(wanted, crowd_tracks(crowd_in(folder, wanted)), around(), generator=generator)
     assert 3 <= len(walks) <= 5
     assert walks.shape[1] == round((3.0 + RUN_OUT_S) / STEP_S) + 1
     assert nearest_m(walks) >= 0.6
@@ -78,7 +78,7 @@ def test_people_are_as_many_as_wanted_in_view_and_apart(folder: Path, seed: int 
 
 def test_the_same_generator_chooses_the_same_and_others_choose_otherwise(folder: Path) -> None:
     wanted = crowd(people=[2, 4])
-    tracks = crowd_tracks(wanted, folder)
+    tracks = crowd_tracks(crowd_in(folder, wanted))
     drawn = [recorded_walks(wanted, tracks, around(), generator=np.random.default_rng(seed)) for seed in (1, 1, 2, 3)]
     np.testing.assert_array_equal(drawn[0], drawn[1])
     assert any(other.shape != drawn[0].shape or not np.array_equal(other, drawn[0]) for other in drawn[2:])
@@ -86,7 +86,7 @@ def test_the_same_generator_chooses_the_same_and_others_choose_otherwise(folder:
 
 def test_what_is_given_is_not_chosen(folder: Path) -> None:
     given = crowd(first_frame=1100, shift=[-31.0, 17.0], turn_deg=0.0, people=[8, 8])
-    tracks = crowd_tracks(given, folder)
+    tracks = crowd_tracks(crowd_in(folder, given))
     walks = recorded_walks(given, tracks, around())
     own = [track for track in tracks.tracks if track.begin_s == pytest.approx(100 / FPS)]
     times = 100 / FPS + STEP_S * np.arange(walks.shape[1])
@@ -98,7 +98,7 @@ def test_what_is_given_is_not_chosen(folder: Path) -> None:
 def test_obstacles_and_a_low_camera_are_kept_clear_of(folder: Path) -> None:
     pillar = Obstacle(shape="cylinder", radius=0.6, height=2.2, position=(0.0, 0.0, 0.0))
     wanted = crowd(people=[2, 8])
-    walks = recorded_walks(wanted, crowd_tracks(wanted, folder), around(obstacles=(pillar,), obstacles_m=0.4))
+    walks = recorded_walks(wanted, crowd_tracks(crowd_in(folder, wanted)), around(obstacles=(pillar,), obstacles_m=0.4))
     during = walks[:, : round(3.0 / STEP_S) + 1]
     assert np.linalg.norm(during, axis=-1).min() >= 1.0
     assert np.linalg.norm(during - (0.0, -6.0), axis=-1).min() >= 1.0
@@ -146,4 +146,4 @@ def test_what_is_impossible_is_refused_in_one_line(folder: Path, more: str, give
 
 def test_a_file_outside_the_folder_is_refused(folder: Path) -> None:
     with pytest.raises(InputError, match="expected one in the scene's folder"):
-        crowd_tracks(crowd(file="../walks.txt"), folder)
+        crowd_in(folder, crowd(file="../walks.txt"))

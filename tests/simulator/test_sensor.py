@@ -12,6 +12,7 @@ from recording.errors import InputError
 from recording.frame import Frame, Reason
 from recording.verify import verify
 from simulator.scene import Scene
+from simulator.sensed import Sensed
 from simulator.sensor import Ideal, sensed_frame
 from simulator.simulate import prepared, simulate, write_simulation
 from simulator.structured_light import StructuredLight
@@ -69,6 +70,17 @@ def test_another_seed_is_another_draw_and_the_same_seed_the_same() -> None:
     )
     np.testing.assert_array_equal(one, again)
     assert abs(np.corrcoef(one, other)[0, 1]) < 0.03
+
+
+def test_the_noise_of_the_first_frame_is_not_what_the_scene_was_drawn_with() -> None:
+    class Draws(StructuredLight):
+        def sensed(self, exact: Frame, view: View, generator: np.random.Generator) -> Sensed:
+            drawn = generator.uniform(1, 2, exact.depth.shape).astype(np.float32)
+            return Sensed(depth=drawn, reason=np.zeros(drawn.shape, np.uint32))
+
+    of_the_scene = np.random.default_rng(7).uniform(1, 2, (CAMERA.height, CAMERA.width)).astype(np.float32)
+    drawn = sensed_frame(flat(), VIEW, Draws(preset="structured_light", seed=7), number=0).depth
+    assert abs(np.corrcoef(drawn.ravel(), of_the_scene.ravel())[0, 1]) < 0.03
 
 
 @pytest.mark.parametrize("depth", [0.4, 10.5])

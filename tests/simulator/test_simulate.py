@@ -146,12 +146,12 @@ def test_a_single_frame_is_a_recording(small: Scene) -> None:
     assert one.moving_ids == (1, 2)
 
 
-def test_picture_sizes_are_read(small: Scene) -> None:
-    assert picture_size("640x480", small) == (640, 480)
-    assert picture_size("2x", small) == (96, 72)
+def test_picture_sizes_are_read() -> None:
+    assert picture_size("640x480", (48, 36)) == (640, 480)
+    assert picture_size("2x", (48, 36)) == (96, 72)
     for wrong in ("640", "x", "0x480", "1.5x", "-2x"):
         with pytest.raises(InputError, match="expected a picture size such as 640x480 or 2x"):
-            picture_size(wrong, small)
+            picture_size(wrong, (48, 36))
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,167 @@
+"""Making recordings: simulate, generate, resense, import."""
+
+import os
+from pathlib import Path
+from typing import Annotated, Literal
+
+from cyclopts import Parameter
+from cyclopts.validators import Number
+
+from algorithm.depth_image import depth_range
+from commands.common import WRITING, Output, Writing
+from recording.errors import InputError
+from recording.importing import Calibration, import_images
+from recording.store import load_recording
+from simulator.family import family_names, load_family
+from simulator.generate import generate
+from simulator.order import Order
+from simulator.resense import write_resensed
+from simulator.scene import scene_names
+from simulator.simulate import prepared, write_simulation
+
+Backend = Literal["auto", "llvm", "scalar"]
+SCENES_HELP = "Scenes: " + ", ".join(scene_names())
+FAMILIES_HELP = "Families: " + ", ".join(family_names())
+
+
+def simulate_command(
+    *scenes: str,
+    output: Output,
+    seed: int = 0,
+    frames: int | None = None,
+    size: str | None = None,
+    sensor: str | None = None,
+    workers: Annotated[int, Parameter(validator=Number(gte=1))] = 1,
+    backend: Backend = "auto",
+    common: Writing = WRITING,
+) -> None:
+    """Render scenes to recordings `OUTPUT/<name>/`, with the truth about everything hidden.
+
+    Example: `unocclude simulate wall -o recordings --seed 1`
+
+    Args:
+        scenes: Names of shipped scenes, or paths of TOML files.
+        output: Folder for the recordings.
+        seed: 0 is the scene itself; any other number is the same scene on another day.
+        frames: Number of frames in place of the scene's own.
+        size: Picture size in pixels, `640x480`, or `2x` for twice the scene's own.
+        sensor: Sensor preset in place of the scene's own: `ideal`, `kinect1`, `tof`, `structured_light` or `stereo`.
+        workers: Processes that cast and write frames; the files are the same for any number.
+        backend: Ray caster: compiled (`llvm`), interpreted (`scalar`), or what works here.
+    """
+    if not scenes:
+        raise InputError("expected at least one scene, got none: try 'unocclude simulate wall -o recordings'")
+    for name in scenes:
+        simulation = prepared(name, seed=seed, size=size, frames=frames, sensor=sensor)
+        place = output / simulation.scene.name
+        with common.progress():
+            write_simulation(simulation, place, backend=backend, workers=workers, overwrite=common.overwrite)
+        common.say(f"simulated {place}: {simulation.scene.frames} frames, {simulation.clearance.sentence}")
+
+
+def generate_command(
+    family: str,
+    *,
+    count: Annotated[int, Parameter(validator=Number(gte=1))],
+    output: Output,
+    seed: Annotated[int, Parameter(validator=Number(gte=0))] = 1,
+    size: str | None = None,
+    sensor: str | None = None,
+    workers: Annotated[int | None, Parameter(validator=Number(gte=1))] = None,
+    backend: Backend = "auto",
+    common: Writing = WRITING,
+) -> None:
+    """Make a data set of random scenes: recordings `OUTPUT/<family>-<seed>/`, and `OUTPUT/manifest.json`.
+
+    Example: `unocclude generate crowded --count 20 -o data`
+
+    The same call again keeps the recordings that are there and makes the others. Seeds 1 to 999 are for development,
+    1000 to 1999 for reporting.
+
+    Args:
+        family: Name of a shipped family, or path of a TOML file.
+        count: How many recordings, of as many seeds in a row.
+        output: Folder for the recordings.
+        seed: The first seed.
+        size: Picture size in pixels, `640x480`, or `2x` for twice the family's own.
+        sensor: Sensor preset in place of the family's own, as for `simulate`.
+        workers: Processes that make recordings, one for each core by default; the files are the same for any number.
+        backend: Ray caster: compiled (`llvm`), interpreted (`scalar`), or what works here.
+    """
+    order = Order(family=load_family(family), folder=output, sensor=sensor, size=size, overwrite=common.overwrite)
+    processes = workers or os.cpu_count() or 1
+    with common.progress():
+        done = generate(order, seeds=range(seed, seed + count), workers=processes, backend=backend)
+    if done.recordings:
+        common.say(f"generated {output}: {done.sentence}")
+    if done.refusal is not None:
+        raise InputError(done.refusal)
+
+
+def resense_command(
+    recording: Path,
+    *,
+    sensor: str,
+    output: Output,
+    seed: Annotated[int | None, Parameter(validator=Number(gte=0))] = None,
+    common: Writing = WRITING,
+) -> None:
+    """See a simulated recording with another sensor: the same truth, other depths; no picture is cast again.
+
+    Example: `unocclude resense recordings/wall --sensor tof -o recordings/wall-tof`
+
+    Args:
+        recording: The recording's folder.
+        sensor: Sensor preset: `ideal`, `kinect1`, `tof`, `structured_light` or `stereo`.
+        output: The recording to make.
+        seed: Of the sensor's noise; the recording's own by default, as if the scene were simulated with the sensor.
+    """
+    if output.resolve().is_relative_to(recording.resolve()):
+        raise InputError(f"{output}: expected another folder than the recording's, which it would replace or fill")
+    with common.progress():
+        write_resensed(load_recording(recording), sensor, output, seed=seed, overwrite=common.overwrite)
+    common.say(f"sensed {output} with {sensor}")
+
+
+def import_command(
+    source: Path,
+    *,
+    output: Output,
+    fx: float,
+    fy: float,
+    cx: float,
+    cy: float,
+    fps: float,
+    scale: float = 0.001,
+    pixel_centre: float = 0.0,
+    pattern: str = "*.png",
+    masks: str | None = None,
+    common: Writing = WRITING,
+) -> None:
+    """Make a recording of a folder of 16-bit depth images.
+
+    Example: `unocclude import depth/ --scale 0.001 --fx 365 --fy 365 --cx 256 --cy 212 --fps 30 -o recording`
+
+    Args:
+        source: Folder of the images; they are taken in the order of the numbers in their names.
+        output: The recording to make.
+        fx: Focal length along the columns, pixels.
+        fy: Focal length along the rows, pixels.
+        cx: Column of the principal point, pixels.
+        cy: Row of the principal point, pixels.
+        fps: Frames a second.
+        scale: Metres of one unit of the stored numbers; TUM RGB-D has 0.0002.
+        pixel_centre: Where the calibration has the centre of pixel (0, 0): 0, as most do, or 0.5.
+        pattern: Names of the depth images.
+        masks: Names of images of object ids, one for each depth image, for the evaluation.
+    """
+    calibration = Calibration(fx=fx, fy=fy, cx=cx, cy=cy, fps=fps, scale=scale, pixel_centre=pixel_centre)
+    overwrite = common.overwrite
+    with common.progress():
+        made = import_images(source, output, calibration=calibration, pattern=pattern, masks=masks, overwrite=overwrite)
+    first = load_recording(output).frames[0]
+    low, high = depth_range([first.depth])
+    common.say(
+        f"imported {made.frames} frames of {made.width}x{made.height} to {output}; the first has depths from "
+        f"{low:.2f} to {high:.2f} m and no return at {1 - first.seen.mean():.0%} of its pixels"
+    )

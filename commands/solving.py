@@ -1,0 +1,65 @@
+"""Solving recordings: solve."""
+
+import tomllib
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from cyclopts import Parameter
+
+from algorithm.pipeline import solve
+from algorithm.settings import Settings, changed_settings, preset_settings, settings_from_file
+from commands.common import WRITING, Writing
+from recording.errors import InputError
+from recording.parquet import save_motions
+from recording.store import load_recording
+
+SETTINGS_HELP = "\n".join(
+    ["Settings for `--set` and `--settings`, with the values of the preset `default`:", ""]
+    + [f"- `{name}` = {field.default}: {field.description}" for name, field in Settings.model_fields.items()]
+)
+
+
+def solve_command(
+    recording: Path,
+    *,
+    output: Annotated[Path | None, Parameter(name=["--output", "-o"])] = None,
+    preset: Literal["default", "paper"] = "default",
+    settings: Path | None = None,
+    set_: Annotated[tuple[str, ...], Parameter(name="--set", negative="")] = (),
+    common: Writing = WRITING,
+) -> None:
+    """Find the motions in a recording and complete them where they were hidden.
+
+    Example: `unocclude solve recordings/wall --preset paper --set eps3=5`
+
+    Args:
+        recording: The recording's folder.
+        output: The Parquet file to write; `motions.parquet` in the recording's folder by default.
+        preset: Settings to start from: the best that we know, or the paper's.
+        settings: TOML file with settings that replace the preset's.
+        set_: `KEY=VALUE`, a setting that replaces the others'; may be given several times.
+    """
+    place = output or recording / "motions.parquet"
+    if place.exists() and not common.overwrite:
+        raise InputError(f"{place} exists already: choose another place, or pass --overwrite to replace it")
+    found = load_recording(recording)
+    chosen = preset_settings(preset, of_scene=(found.metadata.scene or {}).get("paper"))
+    if settings is not None:
+        chosen = settings_from_file(chosen, settings)
+    chosen = changed_settings(chosen, dict(map(_key_and_value, set_)), source="--set")
+    with common.progress():
+        motions = solve(found, chosen)
+    save_motions(motions, place, overwrite=common.overwrite)
+    total = motions.making.seconds["total"]
+    common.say(f"solved {place}: {len(motions.motion_ids)} motions in {total:.1f} s")
+
+
+def _key_and_value(text: str) -> tuple[str, Any]:
+    """A setting as the command line has it: numbers and booleans as in TOML, else text."""
+    key, separator, value = text.partition("=")
+    if not separator:
+        raise InputError(f"--set: expected KEY=VALUE, got {text!r}")
+    try:
+        return key, tomllib.loads(f"value = {value}")["value"]
+    except tomllib.TOMLDecodeError:
+        return key, value
