@@ -45,7 +45,7 @@ def true_segments(recording: Recording) -> Given:
             own = np.flatnonzero(owner == objectid)
             first, last = trajectories.first_frame[own], trajectories.last_frame[own]
             segment[own] = begun + unbroken(first, last, numbers[number][middle[own]])
-            begun = int(segment.max()) + 1
+            begun = int(segment.max(initial=-1)) + 1
         return segment
 
     return Given(segments=segments)
