@@ -7,8 +7,9 @@ from typing import Annotated, Any, Literal
 from cyclopts import Parameter
 
 from algorithm.pipeline import solve
-from algorithm.settings import Settings, changed_settings, preset_settings, settings_from_file
+from algorithm.settings import Settings, changed_settings, settings_from_file
 from commands.common import WRITING, Writing
+from evaluation.methods import settings_of
 from recording.errors import InputError
 from recording.parquet import save_motions
 from recording.store import load_recording
@@ -43,7 +44,7 @@ def solve_command(
     if place.exists() and not common.overwrite:
         raise InputError(f"{place} exists already: choose another place, or pass --overwrite to replace it")
     found = load_recording(recording)
-    chosen = preset_settings(preset, of_scene=(found.metadata.scene or {}).get("paper"))
+    chosen = settings_of(found, preset)
     if settings is not None:
         chosen = settings_from_file(chosen, settings)
     chosen = changed_settings(chosen, dict(map(_key_and_value, set_)), source="--set")

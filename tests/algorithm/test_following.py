@@ -20,7 +20,9 @@ def uniform(depth: np.ndarray, columns: float, rows: float, change: float = 0.0)
     return SceneFlow(column_row=column_row, depth=np.where(np.isfinite(depth), np.float32(change), np.float32(np.nan)))
 
 
-def there_and_back(depths: list[np.ndarray], columns: float, rows: float = 0.0, change: float = 0.0):  # type: ignore[no-untyped-def]  # A list of pairs of flows.
+def there_and_back(
+    depths: list[np.ndarray], columns: float, rows: float = 0.0, change: float = 0.0
+) -> list[tuple[SceneFlow, SceneFlow]]:
     return [(uniform(a, columns, rows, change), uniform(b, -columns, -rows, -change)) for a, b in pairwise(depths)]
 
 

@@ -33,8 +33,8 @@ def bumpy(centre: Callable[[int], tuple[float, float, float]]) -> Surface:
     """A ball with bumps, so that its turning and its moving can be told apart."""
 
     def depth(rays: np.ndarray, frame: int) -> np.ndarray:
-        balls = [sphere(lambda t: np.add(centre(t), offset), 0.22) for offset in OFFSETS]  # noqa: B023 - called at once.
-        return np.min([ball(rays, frame) for ball in balls], axis=0)
+        middles = np.add(centre(frame), OFFSETS).tolist()
+        return np.min([sphere(lambda _, middle=middle: middle, 0.22)(rays, frame) for middle in middles], axis=0)
 
     return depth
 

@@ -1,7 +1,9 @@
 """Recorded crowds: windows, turns and people that suit a scene, scenes that stand for themselves, errors in a line."""
 
+from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -51,8 +53,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def around(**more: object) -> Surroundings:
-    return Surroundings(**({"camera": CAMERA, "seconds": 3.0} | more))  # type: ignore[arg-type]  # By keyword.
+def around(**more: Any) -> Surroundings:
+    return replace(Surroundings(camera=CAMERA, seconds=3.0), **more)
 
 
 def crowd(**more: object) -> RecordedCrowd:
