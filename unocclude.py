@@ -17,7 +17,7 @@ try:
 
     from algorithm.pipeline import solve
     from algorithm.settings import Settings, preset_settings
-    from commands import drawing, judging, making, solving, starting
+    from commands import drawing, judging, making, solving, starting, sweeping
     from commands.common import run
     from evaluation.scores import evaluate
     from recording.causes import causes_of
@@ -85,6 +85,8 @@ app.command(drawing.draw_command, name="draw")
 app.command(drawing.contact_sheet_command, name="contact-sheet")
 app.command(judging.table1_command, name="table1")
 app.command(judging.compare_command, name="compare", help_epilogue=judging.METHODS_HELP)
+app.command(sweeping.sweep_command, name="sweep")
+app.command(sweeping.tune_command, name="tune")
 app.command(drawing.figure_command, name="figure", help_epilogue=drawing.FIGURES_HELP)
 app.command(starting.doctor_command, name="doctor")
 

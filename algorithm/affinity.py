@@ -10,8 +10,6 @@ from scipy.spatial import cKDTree
 from algorithm.trajectories import Trajectories
 
 _ROWS_AT_ONCE = 2_000_000
-_HALF_TRUST_FRAMES = 5.0
-"""Common frames after which `spread` trusts a pair half."""
 
 IndexPairs = tuple[Int[np.ndarray, "pair"], Int[np.ndarray, "pair"]]
 
@@ -23,7 +21,6 @@ class PairStatistics:
     overlap: Int[np.ndarray, "pair"]
     """Number of common frames."""
     largest: Float[np.ndarray, "pair"]
-    smallest: Float[np.ndarray, "pair"]
     mean: Float[np.ndarray, "pair"]
     variance: Float[np.ndarray, "pair"]
 
@@ -60,50 +57,32 @@ def pair_statistics(trajectories: Trajectories, pairs: IndexPairs) -> PairStatis
     end = np.minimum(trajectories.last_frame[first], trajectories.last_frame[second])
     overlap = np.maximum(end - begin + 1, 0)
     row = [trajectories.first_row[side] + begin - trajectories.first_frame[side] for side in (first, second)]
-    values = np.full((4, len(first)), np.nan)
+    values = np.full((3, len(first)), np.nan)
     for part in _parts(overlap):
         values[:, part] = _distances(trajectories.position, row[0][part], row[1][part], overlap[part])
-    largest, smallest, mean, variance = values
-    return PairStatistics(overlap=overlap, largest=largest, smallest=smallest, mean=mean, variance=variance)
+    largest, mean, variance = values
+    return PairStatistics(overlap=overlap, largest=largest, mean=mean, variance=variance)
 
 
 def product_distance(statistics: PairStatistics, *, unit_m: float) -> Float[np.ndarray, "pair"]:
     """The paper's traj_sim = max^2 avg^2 var^2 / overlap, with distances in mean point spacings.
 
-    It is a distance: 0 for two trajectories that keep theirs exactly, however far apart they are.
+    It is a distance: 0 for two trajectories that keep theirs exactly, however far apart they are, and so for
+    two with a single common frame; NaN without one.
     """
     largest, mean = statistics.largest / unit_m, statistics.mean / unit_m
     variance = statistics.variance / unit_m**2
     return largest**2 * mean**2 * variance**2 / np.maximum(statistics.overlap, 1)
 
 
-def product_affinity(statistics: PairStatistics, *, unit_m: float, eps3: float) -> Float[np.ndarray, "pair"]:
-    """1 / (1 + traj_sim / epsilon 3); 0 where traj_sim is above epsilon 3 (section 5 of `docs/method.md`)."""
-    distance = product_distance(statistics, unit_m=unit_m)
-    return np.where(distance <= eps3, 1.0 / (1.0 + distance / eps3), 0.0)
-
-
-def spread_affinity(statistics: PairStatistics, *, unit_m: float, eps3: float) -> Float[np.ndarray, "pair"]:
-    """How little the distance of two neighbours changes: 1 / (1 + spread / epsilon 3), by how long it is known.
-
-    The spread is the largest less the smallest distance in mean point spacings; pairs beyond epsilon 3
-    get 0. It is a matter of neighbours: two people who walk in step keep their distance as well, but are
-    no neighbours.
-    """
-    spread = (statistics.largest - statistics.smallest) / unit_m
-    trust = statistics.overlap / (statistics.overlap + _HALF_TRUST_FRAMES)
-    return np.where(spread <= eps3, trust / (1.0 + spread / eps3), 0.0)
-
-
-MEASURES = {"product": product_affinity, "spread": spread_affinity}
-"""The measures by the names that the settings use."""
+def similarity(distance: Float[np.ndarray, "pair"], *, eps3: float) -> Float[np.ndarray, "pair"]:
+    """1 / (1 + traj_sim / epsilon 3): from 1 down to a half for the pairs that are not ignored."""
+    return 1.0 / (1.0 + distance / eps3)
 
 
 def affinity_matrix(pairs: IndexPairs, affinity: Float[np.ndarray, "pair"], *, count: int) -> sparse.csr_array:
-    """The symmetric sparse matrix of the affinities above 0."""
-    first, second = pairs
-    kept = affinity > 0
-    half = sparse.coo_array((affinity[kept], (first[kept], second[kept])), shape=(count, count))
+    """The symmetric sparse matrix of the affinities."""
+    half = sparse.coo_array((affinity, pairs), shape=(count, count))
     return sparse.csr_array(half + half.T)
 
 
@@ -118,12 +97,12 @@ def _parts(overlap: Int[np.ndarray, "pair"]) -> list[np.ndarray]:
 
 def _distances(
     position: np.ndarray, row_first: np.ndarray, row_second: np.ndarray, overlap: np.ndarray
-) -> Float[np.ndarray, "4 pair"]:
-    """Largest, smallest, mean and variance of the distances of rows that run in parallel for `overlap` rows."""
+) -> Float[np.ndarray, "3 pair"]:
+    """Largest, mean and variance of the distances of rows that run in parallel for `overlap` rows."""
     start = np.concatenate([[0], np.cumsum(overlap)[:-1]])
     along = np.arange(overlap.sum()) - np.repeat(start, overlap)
     difference = position[np.repeat(row_first, overlap) + along] - position[np.repeat(row_second, overlap) + along]
     distance = np.linalg.norm(difference, axis=1)
     mean = np.add.reduceat(distance, start) / overlap
     variance = np.add.reduceat((distance - np.repeat(mean, overlap)) ** 2, start) / overlap
-    return np.stack([np.maximum.reduceat(distance, start), np.minimum.reduceat(distance, start), mean, variance])
+    return np.stack([np.maximum.reduceat(distance, start), mean, variance])

@@ -1,69 +1,42 @@
-"""Step 6: spectral clustering of the affinities into segments (paper, section 4, Motion segmentation)."""
-
-from collections.abc import Iterator
+"""Steps 5 and 6 of the paper: trajectories become segments (section 4, Motion segmentation)."""
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
-from scipy import sparse
-from scipy.sparse.csgraph import connected_components
-from scipy.sparse.linalg import eigsh
+from jaxtyping import Bool, Int
 from scipy.spatial import cKDTree
-from sklearn.cluster import SpectralClustering
 
+from algorithm.affinity import affinity_matrix, neighbour_pairs, pair_statistics, product_distance, similarity
+from algorithm.graph_merging import merged_segments
+from algorithm.settings import Settings
+from algorithm.spectral import spectral_segments
+from algorithm.stopwatch import Stopwatch
 from algorithm.trajectories import Trajectories
 
 Labels = Int[np.ndarray, "trajectory"]
-_DENSE_BELOW = 64
-"""Nodes up to which all eigenvectors are computed at once; iterating for a few of so few does not pay."""
-
-_TOLERANCE = 3e-4
-"""Of the eigenvectors; at 1e-6 the segments are the same and take six times as long, at 1e-2 they are not."""
 
 
-def cut_while_cheap(affinity: sparse.csr_array, *, cut_below: float, smallest: int) -> Labels:
-    """Segments by recursive normalised cuts [Shi and Malik, PAMI 2000].
+def clustered(trajectories: Trajectories, settings: Settings, spacing_m: float, watch: Stopwatch) -> Labels:
+    """The segment of every trajectory, -1 for noise: steps 5 and 6 as in the paper.
 
-    Each connected component is cut in two along its second eigenvector, where the normalised cut is the
-    cheapest, as long as that costs less than `cut_below` and leaves `smallest` members on both sides. So
-    the number of segments comes out of the affinities; with 0 the components stay whole.
+    Every epsilon 5-th trajectory is clustered, by spectral clustering or by graph merging; segments of fewer
+    than epsilon 4 of them are noise; the other trajectories follow.
     """
-    smallest = max(smallest, 1)
-    label = np.zeros(affinity.shape[0], int)
-    found = 0
-    waiting = list(_components(affinity))
-    while waiting:
-        members = waiting.pop()
-        halves = _cheapest_cut(affinity[members][:, members], smallest) if len(members) >= 2 * smallest else None
-        if halves is not None and halves[0] < cut_below:
-            for half in (members[halves[1]], members[~halves[1]]):
-                waiting += [half[part] for part in _components(affinity[half][:, half])]
-        else:
-            label[members] = found
-            found += 1
-    return label
-
-
-def cut_at_eigengap(affinity: sparse.csr_array, *, most: int, seed: int = 0) -> Labels:
-    """Segments by spectral clustering, as many as the largest gap between the eigenvalues says.
-
-    Per connected component: the normalised Laplacian's eigenvalues in ascending order, at most `most` of
-    them; k is where the next one is farthest away; then k-way clustering with cluster_qr [Damle et al.,
-    2019].
-    """
-    label = np.zeros(affinity.shape[0], int)
-    found = 0
-    for members in _components(affinity):
-        part = affinity[members][:, members]
-        count = _eigengap(part, most)
-        if count > 1:
-            method = SpectralClustering(
-                count, affinity="precomputed", assign_labels="cluster_qr", eigen_solver="arpack", random_state=seed
+    sample = np.arange(trajectories.count) % settings.eps5 == 0
+    sampled = trajectories.chosen(sample)
+    with watch.stage("affinity"):
+        pairs = neighbour_pairs(sampled, neighbours=settings.neighbours, radius_m=settings.neighbour_radius_m)
+        distance = product_distance(pair_statistics(sampled, pairs), unit_m=spacing_m)
+        near = distance <= settings.eps3
+        pairs, distance = (pairs[0][near], pairs[1][near]), distance[near]
+    with watch.stage("clustering"):
+        if settings.clustering == "spectral":
+            affinity = affinity_matrix(pairs, similarity(distance, eps3=settings.eps3), count=sampled.count)
+            label = spectral_segments(
+                affinity, smallest=settings.eps4, most=settings.most_segments, count=settings.segment_count
             )
-            label[members] = found + method.fit_predict(sparse.csr_matrix(part))
         else:
-            label[members] = found
-        found = int(label[members].max()) + 1
-    return label
+            label = merged_segments(pairs, distance, count=sampled.count, k=settings.merging_k)
+        label = without_small(label, smallest=settings.eps4)
+        return followers(trajectories, sample, label, radius_m=settings.neighbour_radius_m)
 
 
 def without_small(label: Labels, *, smallest: float) -> Labels:
@@ -99,65 +72,3 @@ def followers(
             near = np.isfinite(distance)
             everyone[asking[near]] = everyone[trajectories.trajectory[known[nearest[near]]]]
     return everyone
-
-
-def normalised_cut(affinity: sparse.csr_array, side: np.ndarray) -> float:
-    """cut(A, B) / vol(A) + cut(A, B) / vol(B) of the two sides."""
-    degree = np.asarray(affinity.sum(axis=1)).ravel()
-    cut = float(affinity[side][:, ~side].sum())
-    return cut / float(degree[side].sum()) + cut / float(degree[~side].sum())
-
-
-def _components(affinity: sparse.csr_array) -> Iterator[Int[np.ndarray, "member"]]:
-    if not affinity.shape[0]:
-        return
-    _, component = connected_components(affinity, directed=False)
-    order = np.argsort(component, kind="stable")
-    yield from np.split(order, np.flatnonzero(np.diff(component[order])) + 1)
-
-
-def _cheapest_cut(affinity: sparse.csr_array, smallest: int) -> tuple[float, np.ndarray] | None:
-    """The cheapest normalised cut along the second eigenvector, and which members lie on its first side."""
-    degree = np.asarray(affinity.sum(axis=1)).ravel()
-    order = np.argsort(_leading_vectors(affinity, 2)[1][:, 1] / np.sqrt(degree), kind="stable")
-    place = np.empty(len(order), int)
-    place[order] = np.arange(len(order))
-    edges = affinity.tocoo()
-    forward = place[edges.row] < place[edges.col]
-    begin, end, weight = place[edges.row[forward]], place[edges.col[forward]], edges.data[forward]
-    size = len(order)
-    across = np.bincount(begin, weight, size) - np.bincount(end, weight, size)
-    cut = np.cumsum(across)[:-1]  # Weight of the edges that span the place between two members.
-    volume = np.cumsum(degree[order])
-    cost = cut / volume[:-1] + cut / (volume[-1] - volume[:-1])
-    cost = cost[smallest - 1 : size - smallest]
-    if not len(cost):
-        return None
-    best = int(np.argmin(cost))
-    return float(cost[best]), place < best + smallest
-
-
-def _eigengap(affinity: sparse.csr_array, most: int) -> int:
-    """The number of eigenvalues of the normalised Laplacian before the largest gap; 1 for tiny components."""
-    count = min(most + 1, affinity.shape[0] - 1)
-    if count < 3:
-        return 1
-    value = 1.0 - _leading_vectors(affinity, count)[0]
-    return int(np.argmax(np.diff(value))) + 1
-
-
-def _leading_vectors(
-    affinity: sparse.csr_array, count: int
-) -> tuple[Float[np.ndarray, "vector"], Float[np.ndarray, "member vector"]]:
-    """The largest eigenvalues, descending, and the eigenvectors of D^-1/2 W D^-1/2."""
-    scale = 1.0 / np.sqrt(np.asarray(affinity.sum(axis=1)).ravel())
-    normalised = sparse.csr_array(affinity.multiply(scale[:, None]).multiply(scale[None, :]))
-    if affinity.shape[0] <= max(_DENSE_BELOW, count + 1):
-        value, vector = np.linalg.eigh(normalised.toarray())
-    else:
-        start = np.linspace(1.0, 2.0, affinity.shape[0])  # A fixed start makes the result repeatable.
-        shifted = normalised + sparse.eye_array(affinity.shape[0])
-        value, vector = eigsh(shifted, k=count, which="LA", v0=start, tol=_TOLERANCE)
-        value = value - 1.0
-    order = np.argsort(-value, kind="stable")[:count]
-    return value[order], vector[:, order]

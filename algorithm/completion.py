@@ -1,13 +1,16 @@
-"""The hidden places of a motion's points, by its representative: steps 8 and 9 brought to every trajectory."""
+"""The hidden places of a motion's points: every point that was seen before or after gets its place."""
 
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float, Int
 
+from algorithm.faint import Stretch, faint_stretches
+from algorithm.gait import Gait, found_gait
 from algorithm.intra import Joins, aligned, bridged, joined
 from algorithm.representative import Curve
 from algorithm.settings import Settings
+from algorithm.sureness import sureness
 from algorithm.trajectories import Trajectories
 from recording.motions import INTER, INTRA
 
@@ -24,9 +27,24 @@ class Completion:
     source: Int[np.ndarray, "place"]
     """`INTRA` within a segment, `INTER` across a hole between two."""
     confidence: Float[np.ndarray, "place"]
-    """1 for a join without a miss, 0 for one at the gate; not calibrated."""
+    """The probability that the place is off by less than 16 cm (`sureness`)."""
     joins: tuple[Int[np.ndarray, "join"], Int[np.ndarray, "join"]]
     """Pairs of trajectories that are one from now on."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Places:
+    """Places between a trajectory that ends and one that begins; both are the same where the other is not known."""
+
+    before: Int[np.ndarray, "place"]
+    after: Int[np.ndarray, "place"]
+    share: Float[np.ndarray, "place"]
+    """0 at the end of the one, 1 at the beginning of the other."""
+    frame: Int[np.ndarray, "place"]
+    position: Float[np.ndarray, "place 3"]
+    """In the axes of the trajectories that were completed."""
+    cost: Float[np.ndarray, "place"]
+    """Of the join, share of the gate; NaN where there is none."""
 
 
 def completed(
@@ -40,40 +58,51 @@ def completed(
 ) -> Completion:
     """The missing places of the trajectories of one motion.
 
-    Trajectories that go on as one another are joined (step 8). With `complete_unmatched`, a point that
-    was last seen before a hole, or first seen after it, and found no partner follows the representative
-    through the hole as well: the surface seen on either side goes with the motion.
+    Trajectories that go on as one another are joined (step 8). With `complete_unmatched`, a point that was last
+    seen before the motion was hidden, or first seen after it, and found no partner goes with the representative as
+    long as it is hidden. With `limb_swing` the gait is taken out first and put back in the end, so that limbs
+    swing on while they are hidden; what has no gait goes with the representative as it is.
     """
+    gait = found_gait(trajectories, curve, fps=fps, spacing_m=spacing_m) if settings.limb_swing else None
+    calm, path = trajectories, curve
+    if gait is not None:
+        calm = gait.calmed(trajectories)
+        path = Curve(first=curve.first, position=np.zeros_like(curve.position), points=curve.points)
     gate_m = settings.intra_gate * spacing_m
-    longest_frames = settings.longest_hole_seconds * fps
-    alignment = aligned(trajectories, curve, method=settings.alignment)
-    joins = joined(trajectories, curve, alignment, gate_m=gate_m, longest_frames=longest_frames)
-    number, frame, position = bridged(trajectories, curve, alignment, joins)
-    before, after, cost = joins
-    source = np.where(segment[before] == segment[after], INTRA, INTER)[number]
-    parts = [(before[number], frame, position, source, 1.0 - cost[number] / gate_m)]
+    alignment = aligned(calm, path, method=settings.alignment)
+    joins = joined(calm, path, alignment, gate_m=gate_m, longest_frames=settings.longest_hole_seconds * fps)
+    number, frame, position = bridged(calm, path, alignment, joins)
+    parts = [_between(calm, joins, (number, frame, position), gate_m)]
     if settings.complete_unmatched:
-        border_frames = round(settings.border_seconds * fps)
-        parts += _continued_into_holes(trajectories, curve, joins, border_frames)
-    columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
-    return Completion(
-        trajectory=columns[0],
-        frame=columns[1],
-        position=columns[2],
-        source=columns[3],
-        confidence=columns[4],
-        joins=(before, after),
+        stretches = faint_stretches(curve, share=settings.faint_below, fps=fps)
+        parts += _continued(calm, path, joins, stretches, round(settings.border_seconds * fps))
+    return _completion(trajectories, segment, _stacked(parts), (joins, gait, curve, fps))
+
+
+def _between(
+    trajectories: Trajectories, joins: Joins, bridges: tuple[np.ndarray, np.ndarray, np.ndarray], gate_m: float
+) -> _Places:
+    """The places of joined trajectories."""
+    number, frame, position = bridges
+    before, after, cost = joins
+    begin, end = trajectories.last_frame[before][number], trajectories.first_frame[after][number]
+    return _Places(
+        before=before[number],
+        after=after[number],
+        share=(frame - begin) / (end - begin),
+        frame=frame,
+        position=position,
+        cost=cost[number] / gate_m,
     )
 
 
-Part = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+def _continued(
+    trajectories: Trajectories, curve: Curve, joins: Joins, stretches: list[Stretch], border_frames: int
+) -> list[_Places]:
+    """The places in the stretches of the trajectories at their borders that found no partner.
 
-
-def _continued_into_holes(trajectories: Trajectories, curve: Curve, joins: Joins, border_frames: int) -> list[Part]:
-    """The places in holes of the trajectories at their borders that found no partner.
-
-    A trajectory is at the border if it ends at most `border_frames` before the hole, or begins at most
-    as many after it: a body takes that long to vanish behind an edge.
+    A trajectory is at the border if it ends at most `border_frames` before the stretch, or begins at most as many
+    after it: a body takes that long to vanish behind an edge.
     """
     alone_end = np.ones(trajectories.count, bool)
     alone_end[joins[0]] = False
@@ -81,11 +110,10 @@ def _continued_into_holes(trajectories: Trajectories, curve: Curve, joins: Joins
     alone_begin[joins[1]] = False
     last_row = trajectories.first_row + trajectories.length - 1
     begin, end = trajectories.first_frame, trajectories.last_frame
-    found = holes(curve)
-    earlier = [-1, *(last for _, last in found)]  # A point enters the next hole only, and came out of the last one.
-    later = [*(first for first, _ in found), np.inf][1:]
+    earlier = [-1, *(last for _, last in stretches)]  # A point enters the next stretch only, and left the last one.
+    later = [*(first for first, _ in stretches), np.inf][1:]
     parts = []
-    for (first, last), previous, following in zip(found, earlier, later, strict=False):
+    for (first, last), previous, following in zip(stretches, earlier, later, strict=False):
         ended = alone_end & (end > previous) & (end >= first - border_frames) & (end < last)
         begun = alone_begin & (begin < following) & (begin <= last + border_frames) & (begin > first)
         parts.append(_carried(trajectories, curve, np.flatnonzero(ended), last_row, (None, last)))
@@ -99,7 +127,7 @@ def _carried(
     which: Int[np.ndarray, "border"],
     row: Int[np.ndarray, "trajectory"],
     until: tuple[int | None, int | None],
-) -> Part:
+) -> _Places:
     """Trajectories carried along by the curve from the given rows: up to a last frame, or from a first one."""
     own = trajectories.frame[row[which]]
     begin = own + 1 if until[0] is None else np.full(len(which), until[0])
@@ -108,12 +136,48 @@ def _carried(
     index = np.repeat(np.arange(len(which)), count)
     frame = begin[index] + np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
     shift = trajectories.position[row[which]] - curve.position[own - curve.first]
-    place = curve.position[frame - curve.first] + shift[index]
-    return which[index], frame, place, np.full(len(frame), INTER), np.full(len(frame), 0.5)
+    return _Places(
+        before=which[index],
+        after=which[index],
+        share=np.zeros(len(frame)),
+        frame=frame,
+        position=curve.position[frame - curve.first] + shift[index],
+        cost=np.full(len(frame), np.nan),
+    )
 
 
-def holes(curve: Curve) -> list[tuple[int, int]]:
-    """First and last frame of every stretch of a motion that was completed."""
-    hidden = np.concatenate([[False], ~curve.observed, [False]]).astype(int)
-    begin, end = np.flatnonzero(np.diff(hidden) == 1), np.flatnonzero(np.diff(hidden) == -1)
-    return [(curve.first + int(b), curve.first + int(e) - 1) for b, e in zip(begin, end, strict=True)]
+def _stacked(parts: list[_Places]) -> _Places:
+    """All places, one part after the other."""
+    return _Places(
+        before=np.concatenate([part.before for part in parts]),
+        after=np.concatenate([part.after for part in parts]),
+        share=np.concatenate([part.share for part in parts]),
+        frame=np.concatenate([part.frame for part in parts]),
+        position=np.concatenate([part.position for part in parts]),
+        cost=np.concatenate([part.cost for part in parts]),
+    )
+
+
+def _completion(
+    trajectories: Trajectories,
+    segment: Int[np.ndarray, "trajectory"],
+    places: _Places,
+    made: tuple[Joins, Gait | None, Curve, float],
+) -> Completion:
+    """The places in world axes, swing included, and how sure they are."""
+    joins, gait, curve, fps = made
+    before, after, frame = places.before, places.after, places.frame
+    position = places.position
+    if gait is not None:
+        share = places.share[:, None]
+        swing = (1 - share) * gait.swing(before, frame) + share * gait.swing(after, frame)
+        position = gait.restored(position + swing, frame)
+    crossed = (segment[before] != segment[after]) | (np.isnan(places.cost) & ~curve.observed[frame - curve.first])
+    return Completion(
+        trajectory=before,
+        frame=frame,
+        position=position,
+        source=np.where(crossed, INTER, INTRA),
+        confidence=sureness(trajectories, (before, after), frame, cost=places.cost, has_gait=gait is not None, fps=fps),
+        joins=(joins[0], joins[1]),
+    )

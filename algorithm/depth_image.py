@@ -10,6 +10,7 @@ from scipy.ndimage import distance_transform_edt
 from recording.camera import Camera
 
 NEAREST_GREY, FARTHEST_GREY = 1.0, 255.0
+_BRIGHTEST, _DIMMEST = 255.0, 76.0
 _DARKEST, _CONTRAST = 60.0, 190.0
 _CONTINUED_PX = 60
 _BEFORE_M = 0.1
@@ -36,6 +37,17 @@ def grey_image(depth: Float32[np.ndarray, "row column"], *, within: DepthRange) 
     scale = (FARTHEST_GREY - NEAREST_GREY) / max(farthest - nearest, 1e-6)
     grey = NEAREST_GREY + (depth - nearest) * scale
     return np.where(np.isfinite(depth), np.round(grey), 0).astype(np.uint8)
+
+
+def nearness_image(depth: Float32[np.ndarray, "row column"], *, within: DepthRange) -> UInt8[np.ndarray, "row column"]:
+    """Depth mapped linearly to brightness: the nearest is 255, the farthest 76, and 0 is empty.
+
+    So an outline against emptiness shows at any distance; as grey, what is near is as dark as emptiness.
+    """
+    nearest, farthest = within
+    scale = (_BRIGHTEST - _DIMMEST) / max(farthest - nearest, 1e-6)
+    bright = _BRIGHTEST - (depth - nearest) * scale
+    return np.where(np.isfinite(depth), np.round(bright), 0).astype(np.uint8)
 
 
 def shading_image(

@@ -14,6 +14,7 @@ from jaxtyping import Bool, Float32, Float64, Int64
 
 from algorithm.compiled import compiled
 from algorithm.lifting import SceneFlow
+from algorithm.noise import surface_noise_m
 from algorithm.sampling import on_surface
 from algorithm.stopwatch import Stopwatch
 from algorithm.trajectories import Trajectories
@@ -25,6 +26,8 @@ _CELLS_A_PIXEL = 2
 _SEEDED_FROM_PX = 0.6
 """A pixel without a point this near to its centre begins one."""
 _INSIDE_PX = 0.499
+_SURFACE_SIGMAS, _HOME_SIGMAS, _JOLT_SIGMAS = 4.0, 6.0, 10.0
+"""Standard deviations of the depth that the tolerances leave room for."""
 _MEMORY = 0.5
 """Share of its former velocity that a point's running mean keeps at each step."""
 
@@ -39,6 +42,14 @@ class Tolerances:
     """Following the flow there and back, a point must come home this near, metres (epsilon 1)."""
     jolt_m: float
     """How far a step may be from the running mean of the steps before it, metres."""
+
+    def under_noise(self, noise_m: float) -> "Tolerances":
+        """The same where depth has noise of this standard deviation: it makes surfaces rough, and steps jolt."""
+        return Tolerances(
+            surface_m=math.hypot(self.surface_m, _SURFACE_SIGMAS * noise_m),
+            home_m=math.hypot(self.home_m, _HOME_SIGMAS * noise_m),
+            jolt_m=math.hypot(self.jolt_m, _JOLT_SIGMAS * noise_m),
+        )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -65,6 +76,7 @@ def followed(
     A point ends where its flow or its surface is not known, where the way back does not lead home, and where its
     step leaves the running mean of its steps. Of points that meet the oldest goes on; where none lies a new one begins.
     """
+    tolerances = tolerances.under_noise(surface_noise_m(depths))
     points = _begun(depths[0], np.isfinite(depths[0]), first=0)
     count = len(points.number)
     history = [points]

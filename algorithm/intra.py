@@ -4,18 +4,15 @@ from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float, Int
-from scipy import sparse
-from scipy.sparse.csgraph import min_weight_full_bipartite_matching
 from scipy.spatial import cKDTree
 
+from algorithm.assignment import cheapest_assignment
 from algorithm.representative import Curve
 from algorithm.settings import AlignmentName
 from algorithm.trajectories import Trajectories
 
 _CANDIDATES = 8
 """Trajectories that each beginning is compared with: those whose extension comes nearest to it."""
-_SMALLEST_COST = 1e-9
-"""A stored zero is no edge to SciPy's matching."""
 
 Joins = tuple[Int[np.ndarray, "join"], Int[np.ndarray, "join"], Float[np.ndarray, "join"]]
 """Trajectories that end, trajectories that go on, and the cost of each join in metres."""
@@ -75,7 +72,9 @@ def joined(
     before, after = _candidates(trajectories, curve, alignment, gate_m, longest_frames)
     cost = _extension_costs(trajectories, curve, alignment, (before, after))
     good = cost <= gate_m
-    return _assigned(before[good], after[good], cost[good], gate_m)
+    before, after, cost = before[good], after[good], cost[good]
+    chosen = cheapest_assignment(before, after, cost, alone=gate_m)
+    return before[chosen], after[chosen], cost[chosen]
 
 
 def bridged(
@@ -138,21 +137,3 @@ def _extension_costs(
     extension = alignment.extended(np.repeat(before, length), _at(curve, trajectories.frame[row]))
     distance = np.linalg.norm(extension - trajectories.position[row], axis=1)
     return np.add.reduceat(distance, start) / length
-
-
-def _assigned(before: np.ndarray, after: np.ndarray, cost: np.ndarray, gate: float) -> Joins:
-    """The cheapest one-to-one assignment, in which everyone may stay alone for the price of the gate."""
-    if not len(before):
-        return before, after, cost
-    rows, row = np.unique(before, return_inverse=True)
-    columns, column = np.unique(after, return_inverse=True)
-    alone = np.arange(len(rows))
-    weight = np.concatenate([np.maximum(cost, _SMALLEST_COST), np.full(len(rows), gate)])
-    graph = sparse.csr_array(
-        (weight, (np.concatenate([row, alone]), np.concatenate([column, len(columns) + alone]))),
-        shape=(len(rows), len(columns) + len(rows)),
-    )
-    chosen_row, chosen_column = min_weight_full_bipartite_matching(graph)
-    real = chosen_column < len(columns)
-    chosen_row, chosen_column = chosen_row[real], chosen_column[real]
-    return rows[chosen_row], columns[chosen_column], graph[chosen_row, chosen_column]

@@ -1,21 +1,20 @@
 """Algorithm 1 of the paper: from a recording to motions."""
 
-import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Float32
 
-from algorithm import affinity, clustering
-from algorithm.completion import completed
+from algorithm import clustering
+from algorithm.bottom_up import Reach, completed_bottom_up
+from algorithm.continued import common_fates, continued
+from algorithm.followed import Followed
 from algorithm.following import Tolerances, followed
-from algorithm.fragments import absorbed
 from algorithm.given import NOTHING_GIVEN, Given, Linker, Segments
-from algorithm.inter import Polynomial, chain_curve, chains, joined_by_polynomials, linked, seen_areas, trusted
 from algorithm.matching import Pairs, matched_pixels
-from algorithm.representative import Curve, representative
-from algorithm.result import Motion, Solution, motions_of
+from algorithm.patches import patches
+from algorithm.result import Solution, motions_of
 from algorithm.scene_flow import FlowsBetween, Footage, ThereAndBack, flows_between
 from algorithm.settings import Settings
 from algorithm.spacing import mean_point_spacing
@@ -36,28 +35,45 @@ def solve(recording: Recording, settings: Settings | None = None, given: Given =
     """
     settings = settings or Settings()
     watch = Stopwatch()
-    spacing_m = mean_point_spacing([frame.depth for frame in recording.frames], camera=recording.camera)
-    trajectories = observed_trajectories(recording, settings, spacing_m, watch, given)
-    if given.segments is not None:
-        segments = given.segments(trajectories)
-    else:
-        segments = segmented(trajectories, settings, spacing_m, watch)
-        with watch.stage("completion"):
-            segments = absorbed(trajectories, segments, settings, fps=recording.fps)
+    followed = followed_points(recording, settings, watch, given)
+    segments = given.segments(followed.trajectories) if given.segments else segmented(followed, settings, watch)
     with watch.stage("completion"):
-        solution = completed_motions(trajectories, segments, settings, spacing_m, recording, given.links)
+        solution = completed_motions(followed, segments, settings, given.links)
     return motions_of(solution, recording, settings, watch.by_stage())
 
 
-def observed_trajectories(
-    recording: Recording, settings: Settings, spacing_m: float, watch: Stopwatch, given: Given = NOTHING_GIVEN
-) -> Trajectories:
+def followed_points(
+    recording: Recording, settings: Settings, watch: Stopwatch, given: Given = NOTHING_GIVEN
+) -> Followed:
     """The points of the recording that move, followed for as long as they are seen (steps 0 to 4)."""
+    footage = footage_of(recording, settings)
+    spacing_m = mean_point_spacing(footage.sensed, camera=footage.camera)
+    flows = timed_flows(flows_between(footage, settings, given.flow), len(footage.moving), watch)
+    trajectories = trajectories_along(flows, footage, settings, spacing_m, watch)
+    return with_patches(trajectories, footage, settings, spacing_m, watch)
+
+
+def footage_of(recording: Recording, settings: Settings) -> Footage:
+    """The frames as the solver sees them."""
     sensed = [frame.depth for frame in recording.frames]
     moving = moving_depths(sensed, settings) if settings.remove_static else sensed
-    footage = Footage(moving=moving, sensed=sensed, camera=recording.camera, fps=recording.fps)
-    flows = timed_flows(flows_between(footage, settings, given.flow), len(moving), watch)
-    return trajectories_along(flows, footage, settings, spacing_m, watch)
+    return Footage(moving=moving, sensed=sensed, camera=recording.camera, fps=recording.fps)
+
+
+def with_patches(
+    trajectories: Trajectories, footage: Footage, settings: Settings, spacing_m: float, watch: Stopwatch
+) -> Followed:
+    """The trajectories with the part of the picture that each of their points stands for."""
+    with watch.stage("trajectories"):
+        around = patches(trajectories, footage.moving, camera=footage.camera, reach_m=settings.patch_radius_m)
+    return Followed(
+        trajectories=trajectories,
+        patches=around,
+        spacing_m=spacing_m,
+        camera=footage.camera,
+        fps=footage.fps,
+        frames=len(footage.moving),
+    )
 
 
 def moving_depths(depths: Depths, settings: Settings) -> list[Float32[np.ndarray, "row column"]]:
@@ -112,77 +128,22 @@ def matched_frames(
     return matches
 
 
-def segmented(trajectories: Trajectories, settings: Settings, spacing_m: float, watch: Stopwatch) -> Segments:
+def segmented(followed: Followed, settings: Settings, watch: Stopwatch) -> Segments:
     """The segment of every trajectory, -1 for noise (steps 5 and 6)."""
-    sample = np.arange(trajectories.count) % settings.eps5 == 0
-    sampled = trajectories.chosen(sample)
-    with watch.stage("affinity"):
-        pairs = affinity.neighbour_pairs(sampled, neighbours=settings.neighbours, radius_m=settings.neighbour_radius_m)
-        measure = affinity.MEASURES[settings.affinity]
-        strength = measure(affinity.pair_statistics(sampled, pairs), unit_m=spacing_m, eps3=settings.eps3)
-        matrix = affinity.affinity_matrix(pairs, strength, count=sampled.count)
+    if settings.clustering != "common_fate":
+        return clustering.clustered(followed.trajectories, settings, followed.spacing_m, watch)
     with watch.stage("clustering"):
-        if settings.clustering == "eigengap":
-            label = clustering.cut_at_eigengap(matrix, most=settings.most_segments)
-        else:
-            label = clustering.cut_while_cheap(matrix, cut_below=settings.cut_below, smallest=math.ceil(settings.eps4))
-        label = clustering.without_small(label, smallest=settings.eps4)
-        return clustering.followers(trajectories, sample, label, radius_m=settings.neighbour_radius_m)
+        return common_fates(followed, settings)
 
 
 def completed_motions(
-    trajectories: Trajectories,
-    segments: Segments,
-    settings: Settings,
-    spacing_m: float,
-    recording: Recording,
-    linker: Linker | None,
+    followed: Followed, segments: Segments, settings: Settings, linker: Linker | None = None
 ) -> Solution:
     """Segments joined into motions, and every point's places while it was hidden (steps 7 to 9)."""
-    fps = recording.fps
-    curves = [
-        representative(trajectories.chosen(segments == segment), drift_frames=settings.drift_seconds * fps)
-        for segment in range(int(segments.max(initial=-1)) + 1)
-    ]
-    window_frames = round(settings.ends_seconds * fps)
-    ends = [trusted(curve, share=settings.faint_share, window_frames=window_frames) for curve in curves]
-    if linker is not None:
-        pairs = linker(trajectories, segments)
-        links = joined_by_polynomials(ends, pairs, eps6_m=settings.eps6, ends_frames=settings.ends_seconds * fps)
-    else:
-        links = linked_segments(trajectories, segments, (curves, ends), settings, recording)
-    motions = []
-    for chain in chains(links, len(curves)):
-        path = [links[pair] for pair in pairwise(chain)]
-        curve = chain_curve([curves[segment] for segment in chain], [ends[segment] for segment in chain], path)
-        members = np.isin(segments, chain)
-        completion = completed(
-            trajectories.chosen(members),
-            segments[members],
-            curve,
-            settings=settings,
-            spacing_m=spacing_m,
-            fps=fps,
-        )
-        motions.append(Motion(segments=tuple(chain), curve=curve, members=members, completion=completion))
-    return Solution(trajectories=trajectories, segments=segments, motions=tuple(motions), links=links)
-
-
-def linked_segments(
-    trajectories: Trajectories,
-    segments: Segments,
-    curves: tuple[list[Curve], list[Curve]],
-    settings: Settings,
-    recording: Recording,
-) -> Mapping[tuple[int, int], Polynomial]:
-    """Which segment goes on as which (step 9); `curves` are the representatives, whole and without their faint ends."""
-    weight = np.ones(len(curves[0]))
-    if settings.spare_scraps:
-        weight = seen_areas(trajectories, segments, camera=recording.camera)
-    return linked(
-        *curves,
-        weight,
-        eps6_m=settings.eps6,
-        ends_frames=settings.ends_seconds * recording.fps,
-        longest_frames=settings.longest_hole_seconds * recording.fps,
+    if settings.completing == "continuation":
+        return continued(followed, segments, settings, linker)
+    reach = Reach(
+        gate_m=settings.intra_gate * followed.spacing_m,
+        longest_frames=settings.longest_hole_seconds * followed.fps,
     )
+    return completed_bottom_up(followed.trajectories, segments, settings, reach, linker)

@@ -1,6 +1,7 @@
 """The energy of range flow and its minimum: loops over the moving pixels, compiled.
 
-Everywhere `flow` and `step` hold (u, v, w) of every pixel: columns and rows in pixels, depth in units of 2 cm.
+Everywhere `flow` holds (u, v, w) of every pixel: columns and rows in pixels, depth in units of 2 cm. An `aspect` of an
+image is one of the values that must stay the same from frame to frame: its brightness and its slopes.
 """
 
 import math
@@ -16,9 +17,11 @@ UNITS_PER_M = 50.0
 _SILENT = 0.1
 """Noise below it makes no difference, units of 2 cm."""
 _WARPS, _REWEIGHTINGS, _SWEEPS, _RELAXATION = 8, 3, 15, 1.9
+_AT_REST = 0.03
+"""A pixel whose flow changed by less in a warp, as its neighbours' did, is left alone from then on."""
 _LARGEST_STEP = 1.0, 1.0, 2.5
 """Of (u, v, w) in one warp: beyond it the slopes mean nothing."""
-_IMAGE_WEIGHT, _IMAGE_SCALE, _GRADIENT_FLOOR = 1.0, 0.3, 0.01
+_ASPECT_WEIGHT, _ASPECT_SCALE, _GRADIENT_FLOOR = 0.5, 0.3, 0.01
 _SMOOTHNESS, _SMOOTH_SCALE = 2.0, 0.05
 _RANGE_REACH_M, _SLOPE_REACH_M = 0.12, 0.08
 
@@ -27,7 +30,7 @@ class Firmness(NamedTuple):
     """How far depth can be trusted."""
 
     range_weight: float
-    """Weight of the range term; the image term's is 1."""
+    """Weight of the range term; an image term's is one half."""
     range_scale: float
     """Residuals of the range term above this count as outliers, units of 2 cm."""
     crease_m: float
@@ -54,35 +57,41 @@ def firmness(noise_m: float) -> Firmness:
 
 @compiled
 def minimise(
-    images: tuple[np.ndarray, np.ndarray],
+    aspects: tuple[np.ndarray, np.ndarray],
     surfaces: tuple[np.ndarray, np.ndarray],
     pixels: np.ndarray,
     flow: np.ndarray,
     firm: Firmness,
 ) -> None:
-    """Bring the flow of the pixels, in place, to a minimum of the energy."""
+    """Bring the flow of the pixels, in place, to a minimum of the energy.
+
+    `aspects` (row, column, aspect) of both images come with their slopes, as `View.aspects` has them. Pixels whose
+    flow has come to rest are not worked on any more: what is left to do shrinks from warp to warp.
+    """
     neighbours, hold = _same_surface(surfaces[0], pixels, firm)
+    active = np.arange(len(pixels))
     for _ in range(_WARPS):
-        terms = _linearised(images, surfaces, pixels, flow)
-        step = np.zeros(flow.shape)
+        terms = _linearised(aspects, surfaces, pixels, active, flow)
+        warped = flow.copy()
         for _ in range(_REWEIGHTINGS):
-            matrix, right = _normal_equations(terms, step, firm)
-            robust = _robust_hold(neighbours, hold, flow + step)
-            _relax(matrix, right, neighbours, robust, flow, step)
-        for k in range(len(flow)):
-            for c in range(3):
-                flow[k, c] += min(max(step[k, c], -_LARGEST_STEP[c]), _LARGEST_STEP[c])
+            matrix, right = _normal_equations(terms, active, warped, flow, firm)
+            robust = _robust_hold(neighbours, hold, active, flow)
+            _relax(matrix, right, neighbours, robust, active, flow)
+        active = _still_moving(neighbours, active, warped, flow)
+        if not len(active):
+            break
 
 
 @compiled
 def _same_surface(surface: np.ndarray, pixels: np.ndarray, firm: Firmness) -> tuple[np.ndarray, np.ndarray]:
-    """The four neighbours of every pixel, -1 where the surface ends, and how firmly each holds it."""
+    """The four neighbours of every pixel, itself where the surface ends, and how firmly each holds it."""
     number = np.full(surface.shape, -1)
     for k in range(len(pixels)):
         number[pixels[k, 0], pixels[k, 1]] = k
-    neighbours, hold = np.full((len(pixels), 4), -1), np.zeros((len(pixels), 4))
+    neighbours, hold = np.empty((len(pixels), 4), np.int64), np.zeros((len(pixels), 4))
     for k in range(len(pixels)):
         for side, (down, right) in enumerate(((0, 1), (0, -1), (1, 0), (-1, 0))):
+            neighbours[k, side] = k
             row, column = pixels[k, 0] + down, pixels[k, 1] + right
             if row < 0 or column < 0 or row >= surface.shape[0] or column >= surface.shape[1]:
                 continue
@@ -95,67 +104,81 @@ def _same_surface(surface: np.ndarray, pixels: np.ndarray, firm: Firmness) -> tu
 
 @compiled
 def _linearised(
-    images: tuple[np.ndarray, np.ndarray],
+    aspects: tuple[np.ndarray, np.ndarray],
     surfaces: tuple[np.ndarray, np.ndarray],
     pixels: np.ndarray,
+    active: np.ndarray,
     flow: np.ndarray,
 ) -> np.ndarray:
-    """Residual, slope along u and slope along v, of the image term and of the range term, at the present flow.
+    """Residual, slope along u and slope along v, of each aspect and last of the range term, at the present flow.
 
     NaN where the range term says nothing: no return of the surface around the target.
     """
-    terms = np.empty((len(pixels), 2, 3))
-    image, surface = images[1], surfaces[1]
-    for k in range(len(pixels)):
-        row, column = pixels[k, 0] + flow[k, 1], pixels[k, 1] + flow[k, 0]
-        terms[k, 0, 0] = _between(image, row, column) - images[0][pixels[k, 0], pixels[k, 1]]
-        terms[k, 0, 1] = _between(image, row, column + 0.5) - _between(image, row, column - 0.5)
-        terms[k, 0, 2] = _between(image, row + 0.5, column) - _between(image, row - 0.5, column)
-        depth = surfaces[0][pixels[k, 0], pixels[k, 1]]
+    count = aspects[0].shape[2] // 3
+    terms = np.empty((len(active), count + 1, 3))
+    for n, k in enumerate(active):
+        i, j = pixels[k]
+        row, column = i + flow[k, 1], j + flow[k, 0]
+        _read(aspects[1], row, column, terms[n])
+        for c in range(count):
+            terms[n, c, 0] -= aspects[0][i, j, 3 * c]
+        depth, surface = surfaces[0][i, j], surfaces[1]
         met = on_surface(surface, surface, (row, column), depth + flow[k, 2] / UNITS_PER_M, _RANGE_REACH_M)
         right = on_surface(surface, surface, (row, column + 1), met, _SLOPE_REACH_M)
         left = on_surface(surface, surface, (row, column - 1), met, _SLOPE_REACH_M)
         below = on_surface(surface, surface, (row + 1, column), met, _SLOPE_REACH_M)
         above = on_surface(surface, surface, (row - 1, column), met, _SLOPE_REACH_M)
-        terms[k, 1, 0] = UNITS_PER_M * (met - depth) - flow[k, 2]
-        terms[k, 1, 1] = UNITS_PER_M * (right - left) / 2
-        terms[k, 1, 2] = UNITS_PER_M * (below - above) / 2
+        terms[n, count, 0] = UNITS_PER_M * (met - depth) - flow[k, 2]
+        terms[n, count, 1] = UNITS_PER_M * (right - left) / 2
+        terms[n, count, 2] = UNITS_PER_M * (below - above) / 2
     return terms
 
 
 @compiled
-def _between(image: np.ndarray, row: float, column: float) -> float:
-    """The image between its pixels, bilinear; at the border it goes on as it is."""
-    row = min(max(row, 0.0), image.shape[0] - 1.0)
-    column = min(max(column, 0.0), image.shape[1] - 1.0)
-    i, j = min(int(row), image.shape[0] - 2), min(int(column), image.shape[1] - 2)
+def _read(aspects: np.ndarray, row: float, column: float, terms: np.ndarray) -> None:
+    """Write the aspects and their slopes between the pixels, bilinear; at the border they go on as they are."""
+    row = min(max(row, 0.0), aspects.shape[0] - 1.0)
+    column = min(max(column, 0.0), aspects.shape[1] - 1.0)
+    i, j = min(int(row), max(aspects.shape[0] - 2, 0)), min(int(column), max(aspects.shape[1] - 2, 0))
+    below, beside = min(i + 1, aspects.shape[0] - 1), min(j + 1, aspects.shape[1] - 1)
     down, right = row - i, column - j
-    upper = (1 - right) * image[i, j] + right * image[i, j + 1]
-    lower = (1 - right) * image[i + 1, j] + right * image[i + 1, j + 1]
-    return (1 - down) * upper + down * lower
+    for c in range(aspects.shape[2]):
+        upper = (1 - right) * aspects[i, j, c] + right * aspects[i, beside, c]
+        lower = (1 - right) * aspects[below, j, c] + right * aspects[below, beside, c]
+        terms[c // 3, c % 3] = (1 - down) * upper + down * lower
 
 
 @compiled
-def _normal_equations(terms: np.ndarray, step: np.ndarray, firm: Firmness) -> tuple[np.ndarray, np.ndarray]:
-    """The data terms' symmetric matrix (uu, uv, vv, uw, vw, ww) and right side, reweighted at the present step."""
-    matrix, right = np.zeros((len(terms), 6)), np.zeros((len(terms), 3))
-    for k in range(len(terms)):
-        residual, along_u, along_v = terms[k, 0]
-        norm = along_u**2 + along_v**2 + _GRADIENT_FLOOR
-        now = residual + along_u * step[k, 0] + along_v * step[k, 1]
-        weight = _IMAGE_WEIGHT / norm / math.sqrt(now**2 / norm + _IMAGE_SCALE**2)
-        _add(matrix[k], right[k], weight, (residual, along_u, along_v, 0.0))
-        residual, along_u, along_v = terms[k, 1]
-        now = residual + along_u * step[k, 0] + along_v * step[k, 1] - step[k, 2]
+def _normal_equations(
+    terms: np.ndarray, active: np.ndarray, warped: np.ndarray, flow: np.ndarray, firm: Firmness
+) -> tuple[np.ndarray, np.ndarray]:
+    """The data terms' symmetric matrix (uu, uv, vv, uw, vw, ww) and right side, reweighted at the present flow."""
+    matrix, right = np.zeros((len(active), 6)), np.zeros((len(active), 3))
+    for n, k in enumerate(active):
+        u, v, w = flow[k] - warped[k]
+        for c in range(terms.shape[1] - 1):
+            residual, along_u, along_v = terms[n, c]
+            norm = along_u**2 + along_v**2 + _GRADIENT_FLOOR
+            now = residual + along_u * u + along_v * v
+            weight = _ASPECT_WEIGHT / norm / math.sqrt(now**2 / norm + _ASPECT_SCALE**2)
+            _add(matrix[n], right[n], weight, (residual, along_u, along_v, 0.0), warped[k])
+        residual, along_u, along_v = terms[n, -1]
+        now = residual + along_u * u + along_v * v - w
         if not math.isnan(now):
             weight = firm.range_weight / math.sqrt(now**2 + firm.range_scale**2)
-            _add(matrix[k], right[k], weight, (residual, along_u, along_v, -1.0))
+            _add(matrix[n], right[n], weight, (residual, along_u, along_v, -1.0), warped[k])
     return matrix, right
 
 
 @compiled
-def _add(matrix: np.ndarray, right: np.ndarray, weight: float, term: tuple[float, float, float, float]) -> None:
-    """Add weight (residual + term . step)^2 to a pixel's equations."""
+def _add(
+    matrix: np.ndarray,
+    right: np.ndarray,
+    weight: float,
+    term: tuple[float, float, float, float],
+    warped: np.ndarray,
+) -> None:
+    """Add weight (residual + term . (flow - warped))^2 to a pixel's equations."""
     residual, u, v, w = term
     matrix[0] += weight * u * u
     matrix[1] += weight * u * v
@@ -163,23 +186,23 @@ def _add(matrix: np.ndarray, right: np.ndarray, weight: float, term: tuple[float
     matrix[3] += weight * u * w
     matrix[4] += weight * v * w
     matrix[5] += weight * w * w
-    right[0] -= weight * u * residual
-    right[1] -= weight * v * residual
-    right[2] -= weight * w * residual
+    pull = weight * (u * warped[0] + v * warped[1] + w * warped[2] - residual)
+    right[0] += u * pull
+    right[1] += v * pull
+    right[2] += w * pull
 
 
 @compiled
-def _robust_hold(neighbours: np.ndarray, hold: np.ndarray, flow: np.ndarray) -> np.ndarray:
+def _robust_hold(neighbours: np.ndarray, hold: np.ndarray, active: np.ndarray, flow: np.ndarray) -> np.ndarray:
     """How firmly each neighbour holds a pixel: less, the more their flows differ."""
-    robust = np.zeros(hold.shape)
-    for k in range(len(flow)):
+    robust = np.empty((len(active), 4))
+    for n, k in enumerate(active):
         for side in range(4):
             other = neighbours[k, side]
-            if other >= 0:
-                square = _SMOOTH_SCALE**2
-                for c in range(3):
-                    square += (flow[k, c] - flow[other, c]) ** 2
-                robust[k, side] = hold[k, side] / math.sqrt(square)
+            square = _SMOOTH_SCALE**2
+            for c in range(3):
+                square += (flow[k, c] - flow[other, c]) ** 2
+            robust[n, side] = hold[k, side] / math.sqrt(square)
     return robust
 
 
@@ -189,25 +212,39 @@ def _relax(
     right: np.ndarray,
     neighbours: np.ndarray,
     hold: np.ndarray,
+    active: np.ndarray,
     flow: np.ndarray,
-    step: np.ndarray,
 ) -> None:
-    """Bring the step, in place, near to the minimum of the quadratic energy."""
+    """Bring the flow, in place, near to the minimum of the quadratic energy."""
     for _ in range(_SWEEPS):
-        for k in range(len(flow)):
-            firm, pull_u, pull_v, pull_w = 1e-6, 0.0, 0.0, 0.0
+        for n, k in enumerate(active):
+            firm, pull_u, pull_v, pull_w = 1e-6, 1e-6 * flow[k, 0], 1e-6 * flow[k, 1], 1e-6 * flow[k, 2]
             for side in range(4):
-                other = neighbours[k, side]
-                if other >= 0:
-                    q = hold[k, side]
-                    firm += q
-                    pull_u += q * (flow[other, 0] + step[other, 0] - flow[k, 0])
-                    pull_v += q * (flow[other, 1] + step[other, 1] - flow[k, 1])
-                    pull_w += q * (flow[other, 2] + step[other, 2] - flow[k, 2])
-            uu, uv, vv, uw, vw, ww = matrix[k]
-            best = (right[k, 0] + pull_u - uv * step[k, 1] - uw * step[k, 2]) / (uu + firm)
-            step[k, 0] += _RELAXATION * (best - step[k, 0])
-            best = (right[k, 1] + pull_v - uv * step[k, 0] - vw * step[k, 2]) / (vv + firm)
-            step[k, 1] += _RELAXATION * (best - step[k, 1])
-            best = (right[k, 2] + pull_w - uw * step[k, 0] - vw * step[k, 1]) / (ww + firm)
-            step[k, 2] += _RELAXATION * (best - step[k, 2])
+                q, other = hold[n, side], neighbours[k, side]
+                firm += q
+                pull_u += q * flow[other, 0]
+                pull_v += q * flow[other, 1]
+                pull_w += q * flow[other, 2]
+            uu, uv, vv, uw, vw, ww = matrix[n]
+            u, v, w = flow[k]
+            u += _RELAXATION * ((right[n, 0] + pull_u - uv * v - uw * w) / (uu + firm) - u)
+            v += _RELAXATION * ((right[n, 1] + pull_v - uv * u - vw * w) / (vv + firm) - v)
+            w += _RELAXATION * ((right[n, 2] + pull_w - uw * u - vw * v) / (ww + firm) - w)
+            flow[k, 0], flow[k, 1], flow[k, 2] = u, v, w
+
+
+@compiled
+def _still_moving(neighbours: np.ndarray, active: np.ndarray, warped: np.ndarray, flow: np.ndarray) -> np.ndarray:
+    """The pixels whose flow, or a neighbour's, has changed; steps that are too large are shortened, in place."""
+    restless = np.zeros(len(flow), np.bool_)
+    for k in active:
+        largest = 0.0
+        for c in range(3):
+            step = min(max(flow[k, c] - warped[k, c], -_LARGEST_STEP[c]), _LARGEST_STEP[c])
+            flow[k, c] = warped[k, c] + step
+            largest = max(largest, abs(step))
+        if largest > _AT_REST:
+            restless[k] = True
+            for side in range(4):
+                restless[neighbours[k, side]] = True
+    return np.flatnonzero(restless)

@@ -14,7 +14,9 @@ it costs grows with the moving pixels alone.
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
+import cv2
 import numpy as np
 from jaxtyping import Float32, Float64, UInt8
 
@@ -25,6 +27,7 @@ from algorithm.range_energy import UNITS_PER_M, firmness, minimise
 from algorithm.sampling import on_surface
 
 _START_REACH_M, _HOME_REACH_M = 0.15, 0.1
+_SMOOTHED_PX = 0.6
 _HOME_PX = 2.0
 """Flows there and back that miss each other by less are averaged."""
 
@@ -35,10 +38,21 @@ class View:
 
     surface: Float32[np.ndarray, "row column"]
     """Depth of what moves, smoothed, metres; NaN elsewhere."""
-    grey: UInt8[np.ndarray, "row column"]
-    """Depth as grey, 0 = empty: the image whose constancy counts."""
-    start: UInt8[np.ndarray, "row column"]
-    """The image that a fast optical flow is begun with."""
+    image: UInt8[np.ndarray, "row column"]
+    """The image whose constancy counts, and that the fast optical flow follows; 0 = empty."""
+
+    @cached_property
+    def aspects(self) -> Float64[np.ndarray, "row column slot"]:
+        """What of the image stays the same where a surface goes: brightness and its slopes, each with its own slopes.
+
+        Of the image smoothed a little and divided by 255; for one aspect after the other the value, its slope along
+        the columns and that along the rows.
+        """
+        value = cv2.GaussianBlur(self.image.astype(np.float64) / 255, (0, 0), _SMOOTHED_PX)
+        aspects = (value, *_slopes(value))
+        return np.ascontiguousarray(
+            np.stack([slot for aspect in aspects for slot in (aspect, *_slopes(aspect))], axis=-1)
+        )
 
 
 def range_flow(a: View, b: View, *, noise_m: float = 0.0) -> SceneFlow:
@@ -47,15 +61,20 @@ def range_flow(a: View, b: View, *, noise_m: float = 0.0) -> SceneFlow:
     `noise_m` is the standard deviation of the surfaces' depth. A surface that does not move has exactly no flow;
     neither has what is empty.
     """
-    start = flow_b_from_a(a.start, b.start, method="dis")
+    start = flow_b_from_a(a.image, b.image, method="dis")
     if np.array_equal(a.surface, b.surface, equal_nan=True):
         start = np.zeros_like(start)
     surfaces = a.surface.astype(np.float64), b.surface.astype(np.float64)
     pixels = np.argwhere(np.isfinite(a.surface))
     flow = _lifted_start(start.astype(np.float64), surfaces, pixels)
-    greys = a.grey.astype(np.float64) / 255, b.grey.astype(np.float64) / 255
-    minimise(greys, surfaces, pixels, flow, firmness(noise_m))
+    minimise((a.aspects, b.aspects), surfaces, pixels, flow, firmness(noise_m))
     return _as_image(flow, pixels, a.surface.shape)
+
+
+def _slopes(values: Float64[np.ndarray, "row column"]) -> tuple[np.ndarray, np.ndarray]:
+    """The change a pixel along the columns and along the rows."""
+    along, down = (cv2.Scharr(values, cv2.CV_64F, *order, scale=1 / 32) for order in ((1, 0), (0, 1)))
+    return along, down
 
 
 def agreed(forward: SceneFlow, backward: SceneFlow, a: View, b: View) -> SceneFlow:

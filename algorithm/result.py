@@ -9,7 +9,6 @@ from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
 from algorithm.completion import Completion
-from algorithm.inter import Polynomial
 from algorithm.representative import Curve
 from algorithm.settings import Settings
 from algorithm.trajectories import Trajectories
@@ -40,8 +39,9 @@ class Solution:
     segments: Int[np.ndarray, "trajectory"]
     """-1 for noise."""
     motions: tuple[Motion, ...]
-    links: Mapping[tuple[int, int], Polynomial]
-    """The polynomial between each pair of linked segments."""
+    links: tuple[Link, ...]
+    alternatives: tuple[Link, ...] = ()
+    """Links that might have been made instead."""
 
 
 def motions_of(solution: Solution, recording: Recording, settings: Settings, seconds: Mapping[str, float]) -> Motions:
@@ -67,7 +67,8 @@ def motions_of(solution: Solution, recording: Recording, settings: Settings, sec
         source=_stacked(np.full(len(trajectories.frame), OBSERVED), solution, "source").astype(np.uint8),
         confidence=_stacked(np.ones(len(trajectories.frame)), solution, "confidence").astype(np.float32),
         representatives=tuple(_representative(number, found) for number, found in enumerate(solution.motions)),
-        links=_links(solution, settings),
+        links=solution.links,
+        alternatives=solution.alternatives,
         making=Making(
             settings=settings.model_dump(),
             recording_digest=recording.digest(),
@@ -101,12 +102,4 @@ def _representative(number: int, motion: Motion) -> Representative:
         frame=motion.curve.frames.astype(np.int32),
         position=motion.curve.position,
         observed=motion.curve.observed,
-    )
-
-
-def _links(solution: Solution, settings: Settings) -> tuple[Link, ...]:
-    """The links, each with 1 less its error's share of epsilon 6 as its confidence (not calibrated)."""
-    return tuple(
-        Link(before=before, after=after, confidence=float(1.0 - polynomial.error_m / settings.eps6))
-        for (before, after), polynomial in sorted(solution.links.items())
     )

@@ -8,7 +8,14 @@ from functools import lru_cache
 import numpy as np
 from jaxtyping import Float32, UInt8
 
-from algorithm.depth_image import continued_behind, depth_range, grey_image, shading_image, smoothed_depth
+from algorithm.depth_image import (
+    continued_behind,
+    depth_range,
+    grey_image,
+    nearness_image,
+    shading_image,
+    smoothed_depth,
+)
 from algorithm.flow import flow_b_from_a
 from algorithm.lifting import SceneFlow, lifted
 from algorithm.noise import surface_noise_m
@@ -26,7 +33,6 @@ ThereAndBack = tuple[SceneFlow, SceneFlow]
 FlowsBetween = Callable[[int, int], ThereAndBack]
 """Takes frames a and b; gives the flow from a to b and that from b to a."""
 _FRAMES_AT_HAND = 4
-_NOISY_M = 0.015
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -52,16 +58,15 @@ def flows_between(footage: Footage, settings: Settings, given: FlowBetween | Non
 
 
 def _range_flows(footage: Footage, settings: Settings) -> FlowsBetween:
-    """Range flow, each way averaged with the way back. Normals of noisy depth show nothing: then it starts on grey."""
+    """Range flow, each way averaged with the way back."""
     noise_m = surface_noise_m(footage.moving)
-    grey = image_of(footage, settings, "grey")
-    start = grey if noise_m > _NOISY_M else image_of(footage, settings, settings.image)
+    image = image_of(footage, settings, settings.image)
     near = settings.similar_depth_m
 
     @lru_cache(_FRAMES_AT_HAND)
     def view(number: int) -> View:
         surface = smoothed_depth(footage.moving[number], similar_depth_m=near)
-        return View(surface=surface, grey=grey(number), start=start(number))
+        return View(surface=surface, image=image(number))
 
     def both(a: int, b: int) -> ThereAndBack:
         views = view(a), view(b)
@@ -94,13 +99,15 @@ def _at_once(flow: Callable[[int, int], SceneFlow]) -> ThereAndBack:
 
 
 def image_of(footage: Footage, settings: Settings, kind: ImageName) -> Callable[[int], Image]:
-    """The image of a frame that flow can follow (step 0): depth as grey, or the surface lit from the camera."""
+    """The image of a frame that flow can follow (step 0): depth as grey or brightness, or the lit surface."""
     within = depth_range(footage.moving)
 
     def image(number: int) -> Image:
         moving = footage.moving[number]
         if kind == "grey":
             plain = grey_image(moving, within=within)
+        elif kind == "nearness":
+            plain = nearness_image(moving, within=within)
         else:
             plain = shading_image(moving, camera=footage.camera, similar_depth_m=settings.similar_depth_m)
         if not settings.remove_static:

@@ -16,10 +16,10 @@ Count = Annotated[int, Field(ge=1)]
 Preset = Literal["default", "paper"]
 PixelFlowName = Literal["classic_nl", "classic_nl_fast", "deepflow", "dis", "dis_refined", "farneback", "rlof", "tvl1"]
 FlowName = Literal["range", PixelFlowName]
-ImageName = Literal["grey", "shading"]
+ImageName = Literal["grey", "nearness", "shading"]
 ChainingName = Literal["pixels", "between_pixels"]
-AffinityName = Literal["product", "spread"]
-ClusteringName = Literal["eigengap", "normalised_cut"]
+ClusteringName = Literal["common_fate", "spectral", "graph_merging"]
+CompletingName = Literal["continuation", "bottom_up"]
 AlignmentName = Literal["rigid", "translation"]
 
 
@@ -34,8 +34,9 @@ class Settings(Frozen):
     static_tolerance_m: Positive = 0.03
     """Metres: a return this near to its pixel's usual depth stands still."""
 
-    image: ImageName = "shading"
-    """What the flow sees: `grey` = depth as 8-bit grey (paper); `shading` = the surface lit from the camera."""
+    image: ImageName = "nearness"
+    """What the flow sees: `grey` = depth as 8-bit grey (paper); `nearness` = what is near is bright, the farthest still
+    stands out from emptiness; `shading` = the surface lit from the camera."""
     flow: FlowName = "range"
     """Optical flow between consecutive frames (paper: Classic+NL)."""
     similar_depth_m: Positive = 0.1
@@ -54,55 +55,72 @@ class Settings(Frozen):
     shortest_frames: Count = 4
     """Frames: a shorter trajectory is noise."""
 
+    patch_radius_m: Positive = 0.25
+    """Metres: a moving pixel belongs to the nearest followed point within this distance."""
+
+    clustering: ClusteringName = "common_fate"
+    """`common_fate` = united bottom up to the size of a body; `spectral` (paper); `graph_merging` of Felzenszwalb
+    and Huttenlocher."""
     neighbours: Count = 12
     """Number of nearest trajectories in a frame that a trajectory is compared with."""
     neighbour_radius_m: Positive = 0.25
     """Metres: farther points are no neighbours."""
-    affinity: AffinityName = "spread"
-    """`product` = the paper's traj_sim; `spread` = how much the distance of two trajectories changes."""
-    eps3: Positive = 3.0
-    """Pairs beyond it are ignored: traj_sim for `product` (paper: epsilon 3), point spacings for `spread`."""
-    eps5: Count = 6
-    """Every eps5-th trajectory is clustered, the others follow their nearest neighbour (paper: epsilon 5)."""
-
-    clustering: ClusteringName = "normalised_cut"
-    """How the number of segments comes about: `eigengap`, or cuts while they are cheap (`normalised_cut`)."""
-    cut_below: Share = 0.005
-    """A segment is cut in two while the normalised cut costs less than this (for `normalised_cut`)."""
+    loosest_m: Positive = 0.2
+    """Metres: neighbours that keep together worse than this are not of one body (`grouping.separations`)."""
+    widest_m: Positive = 1.25
+    """Metres: no body is wider than this in any horizontal direction; an honest prior for people (paper: none)."""
+    tallest_m: Positive = 2.1
+    """Metres: no body is taller than this (paper: none)."""
+    eps3: Positive = 10.0
+    """traj_sim: pairs beyond it are ignored (paper: epsilon 3; not for `common_fate`)."""
+    eps5: Count = 10
+    """Every eps5-th trajectory is clustered, the others follow their nearest neighbour (paper: epsilon 5; not for
+    `common_fate`)."""
     most_segments: Count = 60
-    """Segments that `eigengap` may find in one connected component."""
+    """Segments that the eigengap may find (for `spectral`)."""
+    segment_count: Annotated[int, Field(ge=0)] = 0
+    """Segments to find (for `spectral`), one a connected component at the least; 0 = the eigengap says how many."""
+    merging_k: Positive = 10.0
+    """traj_sim: the larger, the larger the segments (k of Felzenszwalb and Huttenlocher, for `graph_merging`)."""
     eps4: Annotated[float, Field(ge=0)] = 20.0
-    """Trajectories, of those that are clustered: a smaller segment is noise (paper: epsilon 4)."""
+    """Trajectories: a smaller segment is noise, of those that are clustered (paper: epsilon 4); for `common_fate` a
+    smaller motion is."""
 
-    fragment_share: Share = 0.35
-    """A segment with at most this share of a near one's points is a limb of it; 0 = none is (paper)."""
-    fragment_gap_m: Positive = 0.5
-    """Metres: a segment farther from the other is no limb of it."""
-    fragment_drift_m_per_s: Positive = 1.5
-    """Metres a second: a segment that leaves the other faster is no limb of it."""
+    companion_gap_m: Positive = 0.4
+    """Metres: segments farther apart than this are no parts of one body."""
+    companion_stray_m: Positive = 0.65
+    """Metres: a part's centre strays sideways at most this far from its mean place beside the other part."""
+    companion_drift_m_per_s: Positive = 1.1
+    """Metres a second: parts of one body drift apart slower than this."""
 
-    drift_seconds: Annotated[float, Field(ge=0)] = 0.3
-    """Seconds over which a representative is drawn to the centres of mass of well seen frames; 0 = never (paper)."""
-    faint_share: Share = 0.6
-    """A segment's ends with a smaller share of its points near the end do not count for linking; 0 = all count."""
-
+    completing: CompletingName = "continuation"
+    """`continuation` = segments are linked over the whole recording first, then points are completed; `bottom_up` =
+    in segments first, then across (paper)."""
     alignment: AlignmentName = "translation"
     """How the representative is laid on a trajectory: `rigid` (Horn, paper) or `translation`."""
     intra_gate: Positive = 8.0
     """Point spacings: a costlier pair of trajectories is not joined."""
     complete_unmatched: bool = True
     """Points last seen before a hole, or first seen after it, follow the representative through it, partner or not."""
-    border_seconds: Positive = 0.4
-    """Seconds before and after a hole in which such points were last or first seen."""
+    faint_below: Share = 0.5
+    """A motion of which a smaller share of the usual number of points is seen counts as hidden for such points."""
+    limb_swing: bool = True
+    """Limbs swing on while they are hidden, as the visible part of the motion shows; else all goes rigidly along."""
+    border_seconds: Positive = 0.2
+    """Seconds before and after it is hidden in which such points were last or first seen."""
 
     eps6: Positive = 0.15
     """Metres: a polynomial with a larger error joins nothing (paper: epsilon 6, no value given)."""
-    ends_seconds: Positive = 1.0
-    """Seconds of both representatives, next to the hole, that the polynomial is fitted to."""
+    longest_overlap_seconds: Annotated[float, Field(ge=0)] = 2.0
+    """Seconds that two segments of one body may be seen at the same time, on both sides of a trunk."""
+    fastest_walk_m_per_s: Positive = 4.0
+    """Metres a second: a hole that asks for more speed is not bridged."""
+    restlessness: Positive = 0.05
+    """Square metres a second cubed: how much speed changes by itself; the less, the straighter paths are in holes."""
+    restlessness_of_links: Positive = 0.3
+    """The same for the judgement of links, where a turn must be possible."""
     longest_hole_seconds: Positive = 3.0
     """Seconds: a longer hole is not bridged."""
-    spare_scraps: bool = True
-    """Leaving a segment unlinked costs as much as it was seen, so that no body is left alone for a scrap."""
 
 
 _PAPER: dict[str, Any] = {
@@ -110,23 +128,28 @@ _PAPER: dict[str, Any] = {
     "remove_static": False,
     "image": "grey",
     "flow": "classic_nl_fast",
+    "similar_depth_m": 0.1,
+    "fastest_m_per_s": 1000.0,
     "chaining": "pixels",
     "eps1": 0.5,
     "eps2": 0.1,
     "shortest_frames": 2,
-    "affinity": "product",
     "eps3": 10.0,
     "eps4": 20,
     "eps5": 10,
-    "clustering": "eigengap",
-    "fragment_share": 0.0,
-    "drift_seconds": 0.0,
-    "faint_share": 0.0,
+    "neighbours": 12,
+    "neighbour_radius_m": 0.25,
+    "clustering": "spectral",
+    "most_segments": 60,
+    "segment_count": 0,
+    "merging_k": 10.0,
+    "completing": "bottom_up",
     "alignment": "rigid",
+    "intra_gate": 8.0,
     "complete_unmatched": False,
-    "ends_seconds": 1000.0,
+    "limb_swing": False,
+    "eps6": 0.15,
     "longest_hole_seconds": 1000.0,
-    "spare_scraps": False,
 }
 """The paper's choices, with the epsilons that Table 1 gives for `wall`."""
 

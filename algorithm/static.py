@@ -14,6 +14,11 @@ _SPREADS = 3.0
 """A return within so many standard deviations of its pixel's usual depth stands still ..."""
 _WIDEST_M = 0.3
 """... but none that is farther from it than this, metres."""
+_USUAL_SHARE, _BEYOND_USUAL = 0.6, 4.0
+"""So large a share of the pixels shows what noise is usual; a pixel that scatters this much more sees things move."""
+_LEAST_PRESENCE = 0.25
+"""What stands still is seen in so large a share of the frames. A ball that is juggled before nothing comes back to
+its pixels at the same depth, and to most of them for less."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -48,14 +53,14 @@ def background(depths: Sequence[Float32[np.ndarray, "row column"]], *, tolerance
 
     A pixel's usual depth is the median of its returns, less each frame's wobble: else pixels that were
     hidden in other frames would take their depth from other shifts. It is background if at least half of
-    the returns agree with it, and if they do so over at least half of the recording's time: someone who
-    passes agrees with himself for a moment only.
+    the returns agree with it, in at least a quarter of the frames, over at least half of the recording's time:
+    someone who passes agrees with himself for a moment only, and what is juggled is gone between two throws.
     """
     same = np.full(depths[0].shape, tolerance_m, np.float32)
     rough = Background(depth=usual_depth(depths), tolerance_m=same)
     level = [depth - np.float32(rough.wobble(depth)) for depth in depths]
     usual = usual_depth(level)
-    tolerance = np.clip(_SPREADS * usual_spread(level, usual), tolerance_m, max(_WIDEST_M, tolerance_m))
+    tolerance = np.clip(_SPREADS * noise_of_pixels(level, usual), tolerance_m, max(_WIDEST_M, tolerance_m))
     first = np.full(usual.shape, len(depths))
     last = np.full(usual.shape, -1)
     agreeing = np.zeros(usual.shape, int)
@@ -68,13 +73,30 @@ def background(depths: Sequence[Float32[np.ndarray, "row column"]], *, tolerance
         agreeing += agrees
         first = np.where(agrees, np.minimum(first, number), first)
         last = np.where(agrees, number, last)
-    lasting = (last - first + 1 >= len(depths) / 2) & (agreeing >= returns / 2) & (agreeing >= 2)
+    often = (agreeing >= returns / 2) & (agreeing >= len(depths) * _LEAST_PRESENCE) & (agreeing >= 2)
+    lasting = often & (last - first + 1 >= len(depths) / 2)
     return Background(depth=np.where(lasting, usual, np.float32(np.nan)), tolerance_m=tolerance)
 
 
 def usual_depth(depths: Sequence[Float32[np.ndarray, "row column"]]) -> Float32[np.ndarray, "row column"]:
     """The median of every pixel's returns over up to 61 frames spread over the recording; NaN without any."""
     return _quantile(np.stack([depths[number] for number in _spread_frames(len(depths))]), 0.5)
+
+
+def noise_of_pixels(
+    depths: Sequence[Float32[np.ndarray, "row column"]], usual: Float32[np.ndarray, "row column"]
+) -> Float32[np.ndarray, "row column"]:
+    """The standard deviation of every pixel's returns that is noise, metres; NaN where the usual depth is.
+
+    It is their spread about the usual depth, but not more than four times what is usual in the recording at that
+    depth, with noise that grows as depth squared: where arms and balls go by, returns scatter without noise.
+    """
+    known = np.isfinite(usual)
+    if not known.any():
+        return usual
+    spread = usual_spread(depths, usual)
+    usual_noise = np.quantile((spread / usual**2)[known], _USUAL_SHARE) * usual**2
+    return np.minimum(spread, np.float32(_BEYOND_USUAL) * usual_noise).astype(np.float32)
 
 
 def usual_spread(

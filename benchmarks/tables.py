@@ -22,7 +22,7 @@ def run(app: App) -> None:
 def show(title: str, rows: list[Row], *, as_json: bool) -> None:
     """Print the rows, whose keys are the columns; None is a dash."""
     if as_json:
-        print(json.dumps({"title": title, "rows": rows}, allow_nan=False))
+        print(json.dumps(document(title, rows), allow_nan=False))
         return
     table = Table(title=title, title_justify="left")
     columns = list(dict.fromkeys(name for row in rows for name in row))
@@ -31,6 +31,11 @@ def show(title: str, rows: list[Row], *, as_json: bool) -> None:
     for row in rows:
         table.add_row(*(_cell(row.get(name)) for name in columns))
     Console(width=max(80, 14 * len(columns))).print(table)
+
+
+def document(title: str, rows: list[Row]) -> dict[str, Any]:
+    """A table as JSON has it."""
+    return {"title": title, "rows": rows}
 
 
 def score_row(scores: dict[str, Any]) -> Row:

@@ -14,9 +14,8 @@ from cyclopts import App
 
 import unocclude
 from algorithm.given import NOTHING_GIVEN, Given
-from algorithm.pipeline import observed_trajectories
+from algorithm.pipeline import followed_points
 from algorithm.settings import Settings, changed_settings
-from algorithm.spacing import mean_point_spacing
 from algorithm.stopwatch import Stopwatch
 from benchmarks.tables import Row, mean_row, run, show
 from evaluation.drift import AGES, Drift, drift_of
@@ -78,8 +77,7 @@ def _recorded(name: str, seed: int, size: str, sensor: str | None) -> Recording:
 
 def _row(recording: Recording, settings: Settings, given: Given) -> Row:
     watch = Stopwatch()
-    spacing_m = mean_point_spacing([frame.depth for frame in recording.frames], camera=recording.camera)
-    drift = drift_of(recording, observed_trajectories(recording, settings, spacing_m, watch, given))
+    drift = drift_of(recording, followed_points(recording, settings, watch, given).trajectories)
     seconds = watch.by_stage()
     spent = sum(seconds.get(stage, 0.0) for stage in ("flow", "match", "trajectories"))
     return _quality(drift) | {"ms a frame": 1000 * spent / recording.metadata.frames}

@@ -1,14 +1,20 @@
 """What the commands share: the options that all of them take, messages, and how a program ends."""
 
+import os
 import sys
-from contextlib import AbstractContextManager, nullcontext
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 from cyclopts import App, CycloptsError, Parameter
+from cyclopts.validators import Number
+from platformdirs import user_cache_path
 from rich.console import Console
 
+from recording.cache import GIGABYTE, Cache
+from recording.cluster import Client, cluster
 from recording.errors import InputError
 from recording.progress import progress_shown
 
@@ -42,7 +48,50 @@ class Writing(Common):
     """Replace results that exist already, with everything in their folders."""
 
 
-COMMON, WRITING = Common(), Writing()
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class Caching:
+    """What commands take that keep the results of the solver's stages for the next time."""
+
+    cache: Annotated[Path | None, Parameter(env_var="UNOCCLUDE_CACHE")] = None
+    """Folder to keep results of the solver's stages in; one in the user's cache folder by default."""
+    cache_gb: Annotated[float, Parameter(env_var="UNOCCLUDE_CACHE_GB", validator=Number(gt=0))] = 10.0
+    """Its size in gigabytes: what was not used for the longest time goes first."""
+    no_cache: Annotated[bool, Parameter(negative="")] = False
+    """Make everything anew and keep nothing."""
+
+    def chosen(self) -> Cache | None:
+        """The cache, if there is to be one."""
+        if self.no_cache:
+            return None
+        folder = self.cache or user_cache_path("unocclude")
+        return Cache(folder=folder.absolute(), limit_bytes=round(self.cache_gb * GIGABYTE))
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class Scaling:
+    """What commands take that share their work out."""
+
+    workers: Annotated[int | None, Parameter(validator=Number(gte=1))] = None
+    """Processes on this machine, one for each core by default; results are the same for any number."""
+    scheduler: str | None = None
+    """Address of a running Dask scheduler, such as `tcp://host:8786`, whose workers do the work (docs/cluster.md)."""
+
+    @contextmanager
+    def team(self, common: Common) -> Iterator[Client]:
+        """The workers; where to watch them is said."""
+        with cluster(self.scheduler, workers=self.workers or os.cpu_count() or 1) as client:
+            common.say(f"dashboard: {client.dashboard_link}")
+            yield client
+
+    def team_if_needed(self, common: Common, *, tasks: int) -> AbstractContextManager[Client | None]:
+        """The workers; none where this process can do the tasks as well."""
+        alone = self.scheduler is None and min(self.workers or os.cpu_count() or 1, tasks) == 1
+        return nullcontext() if alone else self.team(common)
+
+
+COMMON, WRITING, CACHING, SCALING = Common(), Writing(), Caching(), Scaling()
 Output = Annotated[Path, Parameter(name=["--output", "-o"])]
 
 

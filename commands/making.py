@@ -1,6 +1,5 @@
 """Making recordings: simulate, generate, resense, import."""
 
-import os
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -8,7 +7,7 @@ from cyclopts import Parameter
 from cyclopts.validators import Number
 
 from algorithm.depth_image import depth_range
-from commands.common import WRITING, Output, Writing
+from commands.common import SCALING, WRITING, Output, Scaling, Writing
 from recording.errors import InputError
 from recording.importing import Calibration, import_images
 from recording.store import load_recording
@@ -63,12 +62,12 @@ def generate_command(
     family: str,
     *,
     count: Annotated[int, Parameter(validator=Number(gte=1))],
-    output: Output,
+    output: Annotated[str, Parameter(name=["--output", "-o"])],
     seed: Annotated[int, Parameter(validator=Number(gte=0))] = 1,
     size: str | None = None,
     sensor: str | None = None,
-    workers: Annotated[int | None, Parameter(validator=Number(gte=1))] = None,
     backend: Backend = "auto",
+    scaling: Scaling = SCALING,
     common: Writing = WRITING,
 ) -> None:
     """Make a data set of random scenes: recordings `OUTPUT/<family>-<seed>/`, and `OUTPUT/manifest.json`.
@@ -81,17 +80,22 @@ def generate_command(
     Args:
         family: Name of a shipped family, or path of a TOML file.
         count: How many recordings, of as many seeds in a row.
-        output: Folder for the recordings.
+        output: Folder for the recordings, which all workers must see, or a URL that fsspec knows, `s3://bucket/data`.
         seed: The first seed.
         size: Picture size in pixels, `640x480`, or `2x` for twice the family's own.
         sensor: Sensor preset in place of the family's own, as for `simulate`.
-        workers: Processes that make recordings, one for each core by default; the files are the same for any number.
-        backend: Ray caster: compiled (`llvm`), interpreted (`scalar`), or what works here.
+        backend: Ray caster: compiled (`llvm`), interpreted (`scalar`), or what works where it is cast.
     """
-    order = Order(family=load_family(family), folder=output, sensor=sensor, size=size, overwrite=common.overwrite)
-    processes = workers or os.cpu_count() or 1
-    with common.progress():
-        done = generate(order, seeds=range(seed, seed + count), workers=processes, backend=backend)
+    order = Order(
+        family=load_family(family),
+        folder=output if "://" in output else Path(output).absolute(),
+        sensor=sensor,
+        size=size,
+        overwrite=common.overwrite,
+    )
+    seeds = range(seed, seed + count)
+    with common.progress(), scaling.team_if_needed(common, tasks=count) as client:
+        done = generate(order, seeds=seeds, backend=backend, client=client)
     if done.recordings:
         common.say(f"generated {output}: {done.sentence}")
     if done.refusal is not None:

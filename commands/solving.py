@@ -1,14 +1,15 @@
 """Solving recordings: solve."""
 
+import time
 import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from algorithm.pipeline import solve
 from algorithm.settings import Settings, changed_settings, settings_from_file
-from commands.common import WRITING, Writing
+from algorithm.staged import solve
+from commands.common import CACHING, WRITING, Caching, Writing
 from evaluation.methods import settings_of
 from recording.errors import InputError
 from recording.parquet import save_motions
@@ -27,11 +28,14 @@ def solve_command(
     preset: Literal["default", "paper"] = "default",
     settings: Path | None = None,
     set_: Annotated[tuple[str, ...], Parameter(name="--set", negative="")] = (),
+    caching: Caching = CACHING,
     common: Writing = WRITING,
 ) -> None:
     """Find the motions in a recording and complete them where they were hidden.
 
     Example: `unocclude solve recordings/wall --preset paper --set eps3=5`
+
+    Results of its stages are kept: after another setting is changed, only what depends on that is made again.
 
     Args:
         recording: The recording's folder.
@@ -48,11 +52,14 @@ def solve_command(
     if settings is not None:
         chosen = settings_from_file(chosen, settings)
     chosen = changed_settings(chosen, dict(map(_key_and_value, set_)), source="--set")
+    begun = time.perf_counter()
     with common.progress():
-        motions = solve(found, chosen)
+        motions = solve(found, chosen, cache=caching.chosen())
+    spent = time.perf_counter() - begun
     save_motions(motions, place, overwrite=common.overwrite)
     total = motions.making.seconds["total"]
-    common.say(f"solved {place}: {len(motions.motion_ids)} motions in {total:.1f} s")
+    again = f" ({total:.1f} s without the cache)" if total > 2 * spent else ""
+    common.say(f"solved {place}: {len(motions.motion_ids)} motions in {spent:.1f} s{again}")
 
 
 def _key_and_value(text: str) -> tuple[str, Any]:

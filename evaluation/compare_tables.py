@@ -139,10 +139,11 @@ def intervals_of(outcomes: Sequence[Outcome]) -> dict[str, Interval | None]:
 
 
 def flattened(scores: Scores) -> Scores:
-    """The scores by dotted key, and `found_share`: the share of the objects that were found."""
+    """The scores by dotted key, and `found_share`: the share of the objects that were found; lists are left out."""
     flat: Scores = {}
     for name, value in scores.items():
-        flat |= {f"{name}.{key}": inner for key, inner in value.items()} if isinstance(value, dict) else {name: value}
+        inner = {f"{name}.{key}": each for key, each in value.items()} if isinstance(value, dict) else {name: value}
+        flat |= {key: each for key, each in inner.items() if not isinstance(each, list)}
     objects, found = flat["objects"], flat["motions.found"]
     return flat | {"found_share": found / objects if objects and found is not None else None}
 

@@ -27,6 +27,8 @@ class PointErrors:
     """Length in frames of the run of hidden frames that the frame lies in."""
     error_m: Float64[np.ndarray, "point"]
     """Distance from the true place, metres."""
+    confidence: Float64[np.ndarray, "point"]
+    """What the solver says of the point, 0 to 1."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,6 +90,7 @@ def point_errors(
                 frame=frame[rows],
                 hidden_frames=lengths[number, frame[rows]],
                 error_m=np.linalg.norm(motions.position[completed[rows]] - true_place, axis=1),
+                confidence=motions.confidence[completed[rows]].astype(np.float64),
             )
         )
     return _joined(parts)
@@ -147,6 +150,7 @@ def _joined(parts: list[PointErrors]) -> PointErrors:
         frame=np.concatenate([nothing, *(part.frame for part in parts)]),
         hidden_frames=np.concatenate([nothing, *(part.hidden_frames for part in parts)]),
         error_m=np.concatenate([np.empty(0), *(part.error_m for part in parts)]),
+        confidence=np.concatenate([np.empty(0), *(part.confidence for part in parts)]),
     )
 
 

@@ -1,8 +1,10 @@
 """Whether segments were joined over the holes of the object that they belong to."""
 
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
+from jaxtyping import Bool
 
 from evaluation.clustering import contingency, majority
 from evaluation.observations import BACKGROUND, Observations
@@ -18,10 +20,15 @@ def link_precision(motions: Motions, observations: Observations) -> float | None
     that lists no links, those that its motions imply: a motion's segments in the order in which they begin, each
     with the next.
     """
-    owner = majority(segment_table(observations))
     links = [(link.before, link.after) for link in motions.links] or _implied_links(observations)
+    return float(right_links(observations, links).mean()) if links else None
+
+
+def right_links(observations: Observations, links: Sequence[tuple[int, int]]) -> Bool[np.ndarray, "link"]:
+    """Which links, from a segment to the next, are between segments of the same moving object."""
+    owner = majority(segment_table(observations))
     right = [owner.get(before, BACKGROUND) == owner.get(after) != BACKGROUND for before, after in links]
-    return float(np.mean(right)) if right else None
+    return np.array(right, bool)
 
 
 def link_recall(observations: Observations, visibility: Visibility) -> float | None:

@@ -86,6 +86,7 @@ def require_fitting(recording: Recording, motions: Motions) -> None:
     keys = motions.trajectory.astype(np.int64) * frames + motions.frame
     if len(np.unique(keys)) < len(keys):
         raise InputError("expected one row a trajectory and frame, got several: number the trajectories apart")
+    _require_frames(np.array([event.frame for event in motions.events], int), frames, "events")
     for entry in motions.representatives:
         _require_frames(entry.frame, frames, f"the representative of motion {entry.motion}")
         if not np.isfinite(entry.position).all():

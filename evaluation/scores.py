@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from evaluation.calibration import calibration_scores
 from evaluation.clustering import (
     Contingency,
     adjusted_rand_index,
@@ -26,8 +27,9 @@ from evaluation.completion import (
     centre_errors,
     point_errors,
 )
+from evaluation.events import event_counts, event_scores
 from evaluation.identity import assa, fragmentations, hota, id_switches, idf1, places_of, tracks_of
-from evaluation.ignored import counted
+from evaluation.ignored import counted, uncarried
 from evaluation.links import link_precision, link_recall
 from evaluation.observations import Observations, observations_of, require_fitting
 from evaluation.segmentation import (
@@ -60,6 +62,7 @@ class Evidence:
     motions: Motions
     """Without what is ignored (`evaluation.ignored`)."""
     visibility: Visibility
+    """Without the frames in which an object is carried."""
     observations: Observations
     motion_of: dict[int, tuple[int, float]]
     """Object -> (its motion, F)."""
@@ -98,6 +101,7 @@ def scores(recording: Recording, motions: Motions, visibility: Visibility | None
 def scores_of(evidence: Evidence) -> Scores:
     """The scores that the evidence gives."""
     seconds, settings = evidence.motions.making.seconds, evidence.motions.making.settings
+    points = hidden_points(evidence)
     return {
         **_content(evidence),
         "coverage": coverage(evidence.observations, evidence.visibility),
@@ -105,11 +109,13 @@ def scores_of(evidence: Evidence) -> Scores:
         "segments": _segments(evidence),
         "motions": _motions(evidence),
         "identity": _identity(evidence),
-        "completion": _completion(evidence),
+        "completion": _completion(evidence, points),
         "links": {
             "precision": _if_known(evidence, link_precision(evidence.motions, evidence.observations)),
             "recall": link_recall(evidence.observations, evidence.visibility),
         },
+        "events": _events(evidence),
+        "calibration": _if_known(evidence, calibration_scores(evidence.motions, evidence.observations, points)),
         "seconds": {stage: seconds.get(stage) for stage in STAGES},
         "version": VERSION,
         "preset": settings.get("preset"),
@@ -120,7 +126,7 @@ def evidence_of(recording: Recording, motions: Motions, visibility: Visibility |
     """What the scores are made of; InputError where a row lies outside the recording's frames or picture."""
     require_fitting(recording, motions)
     motions = counted(recording, motions)
-    visibility = visibility or visibility_of(recording)
+    visibility = uncarried(visibility or visibility_of(recording), recording)
     observations = observations_of(recording, motions, visibility)
     return Evidence(
         recording=recording,
@@ -209,12 +215,11 @@ def _identity(evidence: Evidence) -> Scores:
     return {name: measure(tracks) if tracks is not None else None for name, measure in measures.items()}
 
 
-def _completion(evidence: Evidence) -> Scores:
+def _completion(evidence: Evidence, points: PointErrors | None) -> Scores:
     """The scores of hidden frames; all None where nothing is hidden."""
     motion_of = evidence.motion_of_object
     surfaces = hidden_surfaces(evidence.recording, evidence.motions, evidence.visibility, motion_of)
     centre = _centre_errors(evidence).error_m
-    points = hidden_points(evidence)
     hidden = surfaces if surfaces is not None and len(surfaces.area) else None
     return {
         "hidden_object_frames": len(hidden.area) if hidden is not None else None,
@@ -224,6 +229,13 @@ def _completion(evidence: Evidence) -> Scores:
         "centre_max_m": float(centre.max()) if len(centre) else None,
         "surface_coverage_10cm": surface_coverage(hidden) if hidden is not None else None,
     }
+
+
+def _events(evidence: Evidence) -> Scores | None:
+    """Merges and splits; None where nobody knows who carried what."""
+    if evidence.recording.truth is None:
+        return None
+    return event_scores(event_counts(evidence.recording, evidence.motions, evidence.motion_of_object))
 
 
 def _error_statistics(error_m: np.ndarray) -> Scores:

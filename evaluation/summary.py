@@ -37,9 +37,28 @@ def summary(scores: dict[str, Any]) -> str:
             f"recall {_number(completion['recall'], '.2f')} of {hidden} hidden object-frames, "
             f"surface within 10 cm {_number(completion['surface_coverage_10cm'], '.2f')}",
         ),
+        ("events", _events(scores["events"])),
+        ("links hold", _calibration(scores["calibration"], "links")),
+        ("points hold", _calibration(scores["calibration"], "completed")),
         ("time", f"{_number(seconds['total'], '.1f')} s, of it flow {_number(seconds['flow'], '.1f')} s"),
     ]
     return "\n".join(f"{name:<15} {text}" for name, text in rows)
+
+
+def _events(events: dict[str, Any] | None) -> str:
+    if events is None:
+        return _NOTHING
+    shares = [f"{name} {_number(events.get(name), '.2f')}" for name in ("precision", "recall")]
+    return f"{events['count']} told, {events['true']} true, {', '.join(shares)}"
+
+
+def _calibration(calibration: dict[str, Any] | None, what: str) -> str:
+    """The share that holds of what was said with each confidence."""
+    tenths = calibration[what] if calibration is not None else []
+    said = [
+        f"{tenth['share']:.2f} of {tenth['count']} at {tenth['begin']:.1f} to {tenth['end']:.1f}" for tenth in tenths
+    ]
+    return "; ".join(said) or _NOTHING
 
 
 def _number(value: float | None, form: str = "") -> str:

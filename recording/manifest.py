@@ -90,6 +90,11 @@ class Manifest(Frozen):
             raise ValueError(f"expected every recording once, but {name!r} is listed {times} times")
         return self
 
+    @property
+    def text(self) -> str:
+        """As it stands in the file."""
+        return self.model_dump_json(indent=2) + "\n"
+
     def of_split(self, split: Split) -> tuple[Entry, ...]:
         """The recordings whose seeds are for that."""
         return tuple(entry for entry in self.recordings if entry.split == split)

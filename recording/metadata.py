@@ -61,6 +61,18 @@ class ObjectRecord(Frozen):
     moving: bool
 
 
+class CarriedRecord(Frozen):
+    """A stretch of frames in which one object lies in another's hand and moves as a part of it."""
+
+    object: PositiveInt
+    by: PositiveInt
+    """The id of who carries it."""
+    first: int = Field(ge=0)
+    """The first frame of it: above 0 it was caught."""
+    stop: int = Field(ge=1)
+    """The frame after the last: before the recording's end it was let go."""
+
+
 class Metadata(Frozen):
     """The content of `recording.json`. Only what a real recording knows is required."""
 
@@ -79,6 +91,8 @@ class Metadata(Frozen):
     """Preset and parameters of the simulated sensor."""
     seed: int | None = None
     objects: tuple[ObjectRecord, ...] | None = None
+    carried: tuple[CarriedRecord, ...] | None = None
+    """What lies in whose hand, and when; a recording in which nothing is carried has no such key."""
     scene: dict[str, Any] | None = None
     """The whole scene, resolved."""
     scene_digest: str | None = None
@@ -96,6 +110,8 @@ class Metadata(Frozen):
         ids = [entry.id for entry in self.objects or ()]
         if len(set(ids)) != len(ids):
             raise ValueError("expected every object id once")
+        if any({each.object, each.by} - set(ids) or not each.first < each.stop for each in self.carried or ()):
+            raise ValueError("expected 'carried' to name two of the objects, and a 'first' frame before 'stop'")
         return self
 
     def as_camera(self) -> Camera:

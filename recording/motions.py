@@ -1,7 +1,7 @@
 """Motions: what a solver says of a recording, one row a point and frame."""
 
 from dataclasses import dataclass, field, fields
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from jaxtyping import Bool, Float, Float32, Int32, UInt8
@@ -34,7 +34,26 @@ class Link:
     after: int
     """The segment that begins."""
     confidence: float
-    """0 to 1."""
+    """The probability that both are of one object, 0 to 1."""
+    chosen: bool = True
+    """Whether it was made; false for the alternatives of doubtful ones."""
+
+
+EventKind = Literal["merge", "split"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Event:
+    """Two motions that become one, as when a ball is caught, or one that becomes two, as when it is thrown.
+
+    Both keep their numbers: who is carried comes back as the same motion.
+    """
+
+    kind: EventKind
+    frame: int
+    """The first frame in which they move as one (`merge`), or apart (`split`)."""
+    motions: tuple[int, int]
+    """Different ones, in any order."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -66,7 +85,9 @@ class Motions:
     confidence: Float32[np.ndarray, "observation"]
     representatives: tuple[Representative, ...] = ()
     links: tuple[Link, ...] = ()
-    events: tuple[dict[str, Any], ...] = ()
+    alternatives: tuple[Link, ...] = ()
+    """Links that might have been made in place of doubtful ones; none of them is `chosen`."""
+    events: tuple[Event, ...] = ()
     making: Making = field(default_factory=Making)
 
     def __len__(self) -> int:
@@ -89,6 +110,7 @@ class Motions:
             **columns,
             representatives=self.representatives,
             links=self.links,
+            alternatives=self.alternatives,
             events=self.events,
             making=self.making,
         )

@@ -3,7 +3,7 @@
 import json
 import os
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import pyarrow as pa
@@ -13,8 +13,9 @@ from pydantic import Field, model_validator
 from recording.atomic import whole_file
 from recording.checks import Frozen, validated
 from recording.errors import InputError
-from recording.motions import NOISE, SOURCES, Link, Making, Motions, Representative
+from recording.motions import NOISE, SOURCES, Event, EventKind, Link, Making, Motions, Representative
 
+NotNegative = Annotated[int, Field(ge=0)]
 _REQUIRED = ("frame", "trajectory", "x", "y", "z", "motion", "source")
 _KINDS = {
     "frame": pa.int32(),
@@ -57,6 +58,18 @@ class _StoredLink(Frozen):
     confidence: float
 
 
+class _StoredEvent(Frozen):
+    kind: EventKind
+    frame: int = Field(ge=0)
+    motions: tuple[NotNegative, NotNegative]
+
+    @model_validator(mode="after")
+    def _of_two(self) -> "_StoredEvent":
+        if self.motions[0] == self.motions[1]:
+            raise ValueError(f"expected two different motions, got {self.motions[0]} twice")
+        return self
+
+
 class _Belongings(Frozen):
     """The schema's metadata."""
 
@@ -66,7 +79,8 @@ class _Belongings(Frozen):
     seconds: dict[str, float] = Field(default_factory=dict)
     representatives: tuple[_StoredRepresentative, ...] = ()
     links: tuple[_StoredLink, ...] = ()
-    events: tuple[dict[str, Any], ...] = ()
+    alternatives: tuple[_StoredLink, ...] = ()
+    events: tuple[_StoredEvent, ...] = ()
 
 
 def save_motions(motions: Motions, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
@@ -170,9 +184,15 @@ def _belongings(motions: Motions) -> dict[str, Any]:
             }
             for entry in motions.representatives
         ],
-        "links": [vars(link) for link in motions.links],
-        "events": list(motions.events),
+        "links": [_stored_link(link) for link in motions.links],
+        "alternatives": [_stored_link(link) for link in motions.alternatives],
+        "events": [vars(event) for event in motions.events],
     }
+
+
+def _stored_link(link: Link) -> dict[str, Any]:
+    """The link without `chosen`, which the list that it stands in tells."""
+    return {"before": link.before, "after": link.after, "confidence": link.confidence}
 
 
 def _read_belongings(place: Path, metadata: dict[bytes, bytes]) -> dict[str, Any]:
@@ -192,5 +212,6 @@ def _read_belongings(place: Path, metadata: dict[bytes, bytes]) -> dict[str, Any
         ),
         "representatives": tuple(entry.representative for entry in read.representatives),
         "links": tuple(Link(**link.model_dump()) for link in read.links),
-        "events": read.events,
+        "alternatives": tuple(Link(**link.model_dump(), chosen=False) for link in read.alternatives),
+        "events": tuple(Event(**event.model_dump()) for event in read.events),
     }

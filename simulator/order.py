@@ -1,6 +1,5 @@
-"""Recordings of a random family that are made one after the other by one process."""
+"""A recording of a random family, from its seed to its place in a data set."""
 
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,6 +8,7 @@ from recording.errors import InputError
 from recording.manifest import Entry, Split, entry_of
 from recording.metadata import Metadata
 from recording.recording import DepthDigest
+from recording.shelf import Shelf, shelf_at
 from recording.store import load_recording, new_recording, write_metadata, write_picture
 from simulator.backend import Backend
 from simulator.family import DEVELOPMENT_SEEDS, REPORTING_SEEDS, Family
@@ -25,14 +25,19 @@ class Order:
     """What recordings of a family are to be like, and where they are to be."""
 
     family: Family
-    folder: Path
-    """Of the data set; a recording's folder in it has the family's name and the seed."""
+    folder: Path | str
+    """Of the data set, or its URL; a recording's folder in it has the family's name and the seed."""
     sensor: str | None = None
     """A preset in place of the family's sensor."""
     size: str | None = None
     """A picture size in place of the family's own, as in `simulator.simulate.prepared`."""
     overwrite: bool = False
     """Whether recordings that are there are made again."""
+
+    @property
+    def shelf(self) -> Shelf:
+        """Where the recordings stand."""
+        return shelf_at(self.folder)
 
     def pixels(self) -> tuple[int, int] | None:
         """Width and height in place of the family's own."""
@@ -70,16 +75,6 @@ class Refused:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Drawn:
-    """A scene has been drawn, and nothing yet been written."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class FrameDone:
-    """A frame has been written."""
-
-
-@dataclass(frozen=True, kw_only=True)
 class Listed:
     """A recording is complete."""
 
@@ -88,46 +83,30 @@ class Listed:
     """Whether it was made just now, or was there already."""
 
 
-Step = Refused | Drawn | FrameDone | Listed
+def recorded(order: Order, seed: int, backend: Backend) -> Listed | Refused:
+    """The recording of the seed, made unless it is there; InputError where another one is."""
+    try:
+        scene = order.scene(seed)
+    except InputError as error:
+        return Refused(seed=seed, sentence=str(error))
+    simulation = order.ready(scene, seed)
+    if order.shelf.holds(scene.name) and not order.overwrite:
+        with order.shelf.fetched(scene.name) as place:
+            return Listed(entry=_entry_there(place, simulation.metadata), made=False)
+    with order.shelf.making(scene.name) as place:
+        return Listed(entry=_made(simulation, place, backend), made=True)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Batch:
-    """The recordings that one process makes, of some of the seeds."""
-
-    order: Order
-    seeds: Sequence[int]
-    backend: Backend
-
-    def reports(self) -> Iterator[Step]:
-        """Each step, one recording after the other; who asks may be gone at any of them."""
-        for seed in self.seeds:
-            try:
-                scene = self.order.scene(seed)
-            except InputError as error:
-                yield Refused(seed=seed, sentence=str(error))
-                continue
-            yield Drawn()
-            yield from self._recorded(self.order.ready(scene, seed))
-
-    def _recorded(self, simulation: Simulation) -> Iterator[Step]:
-        place = self.order.folder / simulation.scene.name
-        if place.exists() and not self.order.overwrite:
-            yield Listed(entry=_entry_there(place, simulation.metadata), made=False)
-        else:
-            yield from self._made(simulation, place)
-
-    def _made(self, simulation: Simulation, place: Path) -> Iterator[Step]:
-        tallies, digest = [], DepthDigest(simulation.metadata)
-        with new_recording(place, truth=simulation.truth, overwrite=self.order.overwrite) as partial:
-            for number, (frame, xray) in enumerate(pictures(simulation.stage, self.backend)):
-                write_picture(partial, number, frame, xray, metadata=simulation.metadata)
-                tallies.append(tally_of(frame, xray, simulation.metadata))
-                digest.add(frame)
-                yield FrameDone()
-            metadata = simulation.described(tallies)
-            write_metadata(partial, metadata)
-        yield Listed(entry=_entry(metadata, digest.hexdigest()), made=True)
+def _made(simulation: Simulation, place: Path, backend: Backend) -> Entry:
+    tallies, digest = [], DepthDigest(simulation.metadata)
+    with new_recording(place, truth=simulation.truth) as partial:
+        for number, (frame, xray) in enumerate(pictures(simulation.stage, backend)):
+            write_picture(partial, number, frame, xray, metadata=simulation.metadata)
+            tallies.append(tally_of(frame, xray, simulation.metadata))
+            digest.add(frame)
+        metadata = simulation.described(tallies)
+        write_metadata(partial, metadata)
+    return _entry(metadata, digest.hexdigest())
 
 
 def split_of(seed: int) -> Split:

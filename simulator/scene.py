@@ -14,6 +14,7 @@ from pydantic import Field, PositiveInt, model_validator
 from recording.camera import Camera, looking_at
 from recording.checks import Frozen, nearest_name, toml_document, validated
 from recording.errors import InputError
+from simulator.carrying import check_hands
 from simulator.casting import Surroundings
 from simulator.juggling_scene import Juggler
 from simulator.motion_file import with_motion_files
@@ -77,6 +78,8 @@ class Vary(Frozen):
     """Nobody comes nearer to another's centre, metres."""
     obstacle_clearance_m: NotNegative = 0.3
     """Nobody's centre comes nearer to an obstacle, metres."""
+    together: bool = Field(default=False, exclude_if=lambda together: not together)
+    """Whether all people change alike: one shift across the first one's path, share, delay, phase and body for all."""
 
 
 class PaperSettings(Frozen):
@@ -123,6 +126,7 @@ class Scene(Frozen):
         twice = next((name for name in names if names.count(name) > 1), None)
         if twice is not None:
             raise ValueError(f"expected every name once, but two are called {twice!r}")
+        check_hands(self.people, self.balls)
         return self
 
 

@@ -13,7 +13,7 @@ from recording.causes import Tally, tally_of
 from recording.checks import finite, validated
 from recording.errors import InputError
 from recording.frame import Frame
-from recording.metadata import Metadata, metadata_of
+from recording.metadata import CarriedRecord, Metadata, metadata_of
 from recording.occlusion import Nearness, Occlusion
 from recording.progress import tracked
 from recording.recording import Recording
@@ -22,12 +22,13 @@ from recording.truth import Truth
 from recording.version import VERSION
 from recording.xray import XRay
 from simulator.backend import Backend, BackendWish, find_backend
+from simulator.carrying import carried_records
 from simulator.clearance import Clearance, smallest_clearance
 from simulator.pictures import Stage, pictures
 from simulator.scene import Scene, load_scene
 from simulator.sensor import on_another_day
 from simulator.shares import written_pictures
-from simulator.stage import Actor, actors, walkers_centres
+from simulator.stage import Actor, actors, frame_times, walkers_centres
 from simulator.variation import varied
 
 
@@ -107,6 +108,7 @@ def made_ready(scene: Scene, *, seed: int) -> Simulation:
         sensor=resolved.sensor.model_dump(mode="json"),
         seed=seed,
         objects=tuple(actor.record for actor in cast),
+        carried=_carried(resolved, cast),
         scene=document,
         scene_digest=digest_of(document),
         made_by=f"unocclude {VERSION}",
@@ -167,6 +169,13 @@ def picture_size(text: str, own: tuple[int, int]) -> tuple[int, int]:
     if match := re.fullmatch(r"([1-9]\d*)x", text):
         return int(match[1]) * own[0], int(match[1]) * own[1]
     raise InputError(f"expected a picture size such as 640x480 or 2x, got {text!r}")
+
+
+def _carried(scene: Scene, cast: Sequence[Actor]) -> tuple[CarriedRecord, ...] | None:
+    """Which ball lies in whose hand, and when; None where no ball does."""
+    ids = [actor.record.id for actor in cast if actor.record.kind == "ball"]  # Juggled balls come first.
+    balls = dict(zip(ids[len(ids) - len(scene.balls) :], scene.balls, strict=True))
+    return carried_records(scene.people, balls, frame_times(scene)) or None
 
 
 def _require_room(scene: Scene, clearance: Clearance) -> None:

@@ -1,5 +1,6 @@
 """What stands and moves on a scene: every object with its number, its name and its mesh in every frame."""
 
+import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -11,13 +12,14 @@ from recording.metadata import ObjectRecord
 from recording.truth import MeshSequence
 from simulator import shapes
 from simulator.body import load_body
+from simulator.carrying import ball_places, hand_places, held_out, held_sides, last_moment
 from simulator.dressing import dressed, holding
 from simulator.juggler import juggling_act
 from simulator.path import Path, path_through
 from simulator.person import walking_person
 from simulator.retarget import ground_track, performing_person
 from simulator.scene import Scene
-from simulator.things import Ball, Obstacle, Person
+from simulator.things import Obstacle, Person
 
 _MOVING_KINDS = ("person", "ball")
 """What moves as a whole; a juggler's arms move, but the juggler stands."""
@@ -63,22 +65,39 @@ def walkers_centres(scene: Scene) -> list[Float[np.ndarray, "frame 2"]]:
 def _meshes(scene: Scene) -> Iterator[tuple[str | None, str, MeshSequence]]:
     """Everything's name if it has one, kind and mesh."""
     times = frame_times(scene)
+    hands: dict[tuple[str, str], np.ndarray] = {}
     for person in scene.people:
-        yield person.name, "person", _person(person, times)
+        sides = held_sides(person, scene.balls)
+        acted = _person(person, _until_let_go(scene) if sides else times, sides)
+        for side in sides:
+            hands[person.name or "", side] = hand_places(load_body(person.body), acted, side)
+        yield person.name, "person", MeshSequence(faces=acted.faces, vertices=acted.vertices[: len(times)])
     for juggler in scene.jugglers:
         act = juggling_act(juggler, times)
         yield juggler.name, "juggler", act.mesh
         for places in act.balls:
             yield None, "ball", shapes.moved(shapes.ball(juggler.ball_radius), places)
     for ball in scene.balls:
-        yield ball.name, "ball", shapes.moved(shapes.ball(ball.radius), _flight(ball, times))
+        yield ball.name, "ball", shapes.moved(shapes.ball(ball.radius), ball_places(ball, times, hands, fps=scene.fps))
     for obstacle in scene.obstacles:
         yield obstacle.name, obstacle.shape, _solid(obstacle)
 
 
-def _person(person: Person, times: Float[np.ndarray, "frame"]) -> MeshSequence:
+def _until_let_go(scene: Scene) -> Float[np.ndarray, "moment"]:
+    """The times of the frames, and of those after them until no ball is caught or let go any more, seconds.
+
+    So a ball in the air goes the same way in a recording that is cut short before somebody catches it.
+    """
+    frames = max(scene.frames, math.ceil(last_moment(scene.balls) * scene.fps) + 1)
+    return np.arange(frames) / scene.fps
+
+
+def _person(person: Person, times: Float[np.ndarray, "frame"], sides: Sequence[str]) -> MeshSequence:
+    """The person at the times; the arms of the sides are held out for balls."""
     body = load_body(person.body)
     held = holding(body, person.props)
+    for side in sides:
+        held |= held_out(side)
     clothed = dressed(body, person.props)
     if person.motion is not None:
         return performing_person(clothed, person.motion, times, holding=held)
@@ -93,23 +112,6 @@ def _ground_track(person: Person, times: Float[np.ndarray, "frame"]) -> Float[np
 
 def _walk(person: Person) -> Path:
     return path_through(person.waypoints, speed=person.speed, times=person.times, start=person.start)
-
-
-def _flight(ball: Ball, times: Float[np.ndarray, "frame"]) -> Float[np.ndarray, "frame 3"]:
-    """The centre of the ball at the times: straight from way-point to way-point, at rest before and after."""
-    places = np.array(ball.waypoints)
-    passed = ball.start + _passing_times(places, ball.speed, ball.times)
-    return np.stack([np.interp(times, passed, axis) for axis in places.T], axis=-1)
-
-
-def _passing_times(
-    places: Float[np.ndarray, "waypoint 3"], speed: float | None, times: Sequence[float] | None
-) -> Float[np.ndarray, "waypoint"]:
-    """When each way-point is passed, seconds after the first."""
-    if times is not None:
-        return np.array(times)
-    lengths = np.linalg.norm(np.diff(places, axis=0), axis=-1)
-    return np.concatenate([[0.0], np.cumsum(lengths)]) / (speed or 1.0)
 
 
 def _solid(obstacle: Obstacle) -> MeshSequence:

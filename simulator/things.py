@@ -4,7 +4,7 @@ Lengths are metres, times seconds, speeds metres a second; what is in degrees sa
 """
 
 from itertools import pairwise
-from math import dist
+from math import dist, inf
 from typing import Annotated, Literal
 
 from pydantic import Field, field_validator, model_validator
@@ -13,7 +13,7 @@ from recording.checks import Frozen
 from simulator.body_name import BodyName
 from simulator.motion_file import Motion
 from simulator.path import FASTEST_WALK
-from simulator.props import Prop, check_props
+from simulator.props import Prop, Side, check_props
 
 Positive = Annotated[float, Field(gt=0)]
 Ground = tuple[float, float]
@@ -81,25 +81,58 @@ class Person(Frozen):
         ]
 
 
+class Held(Frozen):
+    """A time in which a ball lies in somebody's hand; the arm is held out for it in all frames."""
+
+    by: str
+    """The name of one of the people."""
+    side: Side = "right"
+    """Whose hand it is."""
+    begin: float | None = None
+    """When it is caught, seconds after the first frame; from the beginning if not given."""
+    end: float | None = None
+    """When it is let go, seconds after the first frame; never if not given."""
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """From when till when, seconds after the first frame; infinite where it has no beginning or end."""
+        return (-inf if self.begin is None else self.begin, inf if self.end is None else self.end)
+
+
 class Ball(Frozen):
-    """A ball whose centre follows straight lines between way-points."""
+    """A ball whose centre follows straight lines between way-points, or flies, and may be caught on its way."""
 
     name: str | None = None
     """`ball 1` and so on where it is not given."""
     radius: Positive
     """Metres."""
-    waypoints: Annotated[tuple[Point, ...], Field(min_length=2)]
-    """Places of the centre, metres."""
+    waypoints: tuple[Point, ...] = ()
+    """Places of the centre, metres; two at the least, none are needed where it is `held`."""
     speed: Positive | None = None
     """Metres a second, the same all along; or else `times`."""
     times: tuple[float, ...] | None = None
     """When each way-point is passed, seconds after `start`; or else `speed`."""
     start: float = 0.0
     """When the first way-point is left, seconds after the first frame."""
+    thrown: bool = Field(default=False, exclude_if=lambda thrown: not thrown)
+    """Whether it flies from place to place as gravity has it; else it goes straight."""
+    held: tuple[Held, ...] = Field(default=(), exclude_if=lambda held: not held)
+    """When it lies in whose hand; in between it goes from hand to way-point to hand, each at its time."""
 
     @model_validator(mode="after")
     def _path(self) -> "Ball":
-        _check_timing(self.waypoints, self.speed, self.times)
+        if not self.held and len(self.waypoints) < 2:
+            raise ValueError("expected at least 2 way-points")
+        if self.held and self.speed is not None:
+            raise ValueError("expected 'times' in place of 'speed', so that it is known when it meets the hand")
+        if self.waypoints or not self.held:
+            _check_timing(self.waypoints, self.speed, self.times)
+        spans = [held.span for held in self.held]
+        if any(end <= begin for begin, end in spans) or any(b[0] <= a[1] for a, b in pairwise(spans)):
+            raise ValueError("expected times in hands that follow one another, each with its 'begin' before its 'end'")
+        passed = [self.start + time for time in self.times or ()]
+        if any(begin <= time <= end for begin, end in spans for time in passed):
+            raise ValueError("expected way-points that are passed before it is caught or after it is let go")
         return self
 
 

@@ -14,6 +14,7 @@ from simulator.things import Person
 
 TRIES = 1000
 """Rounds of drawing anew those who come too near to somebody or something, before the search is given up."""
+Waypoints = tuple[tuple[float, float], ...]
 _DIGITS = 4  # A tenth of a millimetre: the resolved scene stays readable.
 
 
@@ -21,8 +22,9 @@ def varied(scene: Scene, seed: int) -> Scene:
     """The scene as it happens under the seed: 0 is the scene itself, another one varies people's walks and jugglers.
 
     Every walk and juggler is drawn anew, evenly within the ranges of the scene's `[vary]`; then those who come
-    nearer to somebody or something than `[vary]` allows are drawn again, until nobody does. The same seed gives
-    the same scene, whatever the picture's size. Balls that nobody juggles and obstacles stay as they are.
+    nearer to somebody or something than `[vary]` allows are drawn again, until nobody does. Where all change
+    `together` there is one draw for all people. The same seed gives the same scene, whatever the picture's size.
+    Way-points of balls that nobody juggles and obstacles stay as they are.
     """
     if seed < 0:
         raise InputError(f"expected a seed of 0 (the scene itself) or above, got {seed}")
@@ -34,7 +36,10 @@ def varied(scene: Scene, seed: int) -> Scene:
     again = [True] * len(given)
     for _ in range(TRIES):
         drawn = zip(given, today, again, strict=True)
-        today = tuple(_varied_anybody(one, vary, generator) if anew else kept for one, kept, anew in drawn)
+        if vary.together:
+            today = _varied_alike(given, vary, generator)
+        else:
+            today = tuple(_varied_anybody(one, vary, generator) if anew else kept for one, kept, anew in drawn)
         day = scene.model_copy(update={"people": today[:people], "jugglers": today[people:]})
         centres = walkers_centres(day)
         near = crowded(centres, day.obstacles, people_m=vary.clearance_m, obstacles_m=vary.obstacle_clearance_m)
@@ -47,14 +52,31 @@ def varied(scene: Scene, seed: int) -> Scene:
     )
 
 
+def _varied_alike(
+    given: tuple[Person | Juggler, ...], vary: Vary, generator: np.random.Generator
+) -> tuple[Person | Juggler, ...]:
+    """Everybody on another day, as one draw has it for all; people are shifted across the first one's path."""
+    number = int(generator.integers(2**63))
+    leader = given[0].waypoints if isinstance(given[0], Person) else ()
+    return tuple(
+        _varied_person(one, vary, np.random.default_rng(number), leader)
+        if isinstance(one, Person)
+        else _varied_juggler(one, vary, np.random.default_rng(number))
+        for one in given
+    )
+
+
 def _varied_anybody(one: Person | Juggler, vary: Vary, generator: np.random.Generator) -> Person | Juggler:
     if isinstance(one, Person):
         return _varied_person(one, vary, generator)
     return _varied_juggler(one, vary, generator)
 
 
-def _varied_person(person: Person, vary: Vary, generator: np.random.Generator) -> Person:
-    """The person on another day; always draws the same amount of randomness, whatever may vary."""
+def _varied_person(person: Person, vary: Vary, generator: np.random.Generator, leader: Waypoints = ()) -> Person:
+    """The person on another day; always draws the same amount of randomness, whatever may vary.
+
+    The path is shifted across that of the leader, or across its own where there is none.
+    """
     aside, faster, later = generator.uniform(-1.0, 1.0, size=3)
     phase = round(float(generator.uniform()), _DIGITS)
     body = str(generator.choice(body_names()))
@@ -63,7 +85,7 @@ def _varied_person(person: Person, vary: Vary, generator: np.random.Generator) -
         return person.model_copy(update=moved | ({"body": body} if vary.bodies else {}))
     factor = min(1.0 + float(faster) * vary.speed_share, FASTEST_WALK / max(person.top_speed, 1e-9))
     changes: dict[str, object] = {
-        "waypoints": _shifted(person.waypoints, float(aside) * vary.sideways_m),
+        "waypoints": _shifted(person.waypoints, float(aside) * vary.sideways_m, leader or person.waypoints),
         "start": round(person.start + float(later) * vary.start_s, _DIGITS),
     }
     if person.speed is not None:
@@ -107,15 +129,15 @@ def _beside(motion: Motion, aside_m: float) -> Motion:
     return motion.model_copy(update={"position": tuple(round(float(metres), _DIGITS) for metres in place)})
 
 
-def _shifted(waypoints: tuple[tuple[float, float], ...], aside_m: float) -> tuple[tuple[float, float], ...]:
-    """The way-points, all moved to the left of the path's direction.
+def _shifted(waypoints: Waypoints, aside_m: float, leader: Waypoints) -> Waypoints:
+    """The way-points, all moved to the left of the direction of the leader's path.
 
-    The direction is from the first to the last, or, where these are one, that of the first stretch; somebody
+    The direction is from its first to its last, or, where these are one, that of the first stretch; somebody
     who stands is taken to face along x.
     """
-    places = np.array(waypoints)
+    places = np.array(leader)
     stretches = np.array([places[-1] - places[0], *np.diff(places, axis=0), (1.0, 0.0)])
     direction = stretches[np.argmax(stretches.any(axis=1))]
     left = np.array([-direction[1], direction[0]]) / np.hypot(*direction)
-    moved = np.round(places + aside_m * left, _DIGITS)
+    moved = np.round(np.array(waypoints) + aside_m * left, _DIGITS)
     return tuple((float(x), float(y)) for x, y in moved)

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Float, Int
 
-from algorithm.inter import HIGHEST_DEGREE, LOWEST_DEGREE, Polynomial, fitted_polynomial, trusted
+from algorithm.inter import HIGHEST_DEGREE, LOWEST_DEGREE, Polynomial, fitted_polynomial
 from algorithm.representative import Curve, representative
 from algorithm.settings import Settings
 from algorithm.static import Background, background
@@ -22,6 +22,8 @@ from recording.motions import Motions, Representative, mean_places
 from recording.recording import Recording
 from recording.visibility import surface_points, visibility_of
 
+_ENDS_SECONDS = 1.0
+"""Of both representatives, next to a hole, that a candidate is fitted to."""
 _MOMENTS, _MOMENTS_RAISED = 6, 4
 _FRAMES_SHOWN = 24
 """Frames that must fit into a view."""
@@ -85,11 +87,10 @@ class Solved:
 
     @cached_property
     def curves(self) -> Mapping[int, Curve]:
-        """The representative of each segment."""
-        drift_frames = self.settings.drift_seconds * self.recording.fps
+        """The representative of each segment (step 7 of the paper)."""
         numbers = np.unique(self.segment[self.segment >= 0])
         chosen = {int(number): self.trajectories.chosen(self.segment == number) for number in numbers}
-        return {number: representative(part, drift_frames=drift_frames) for number, part in chosen.items()}
+        return {number: representative(part) for number, part in chosen.items()}
 
     @cached_property
     def ground(self) -> Background:
@@ -181,10 +182,8 @@ class Solved:
 
     def _ends(self, pair: Pair) -> tuple[Curve, Curve]:
         """The stretches next to the hole that a polynomial is fitted to."""
-        frames = self.settings.ends_seconds * self.recording.fps
-        share = self.settings.faint_share
-        before, after = (trusted(self.curves[number], share=share, window_frames=round(frames)) for number in pair)
-        length = min(int(frames), self.recording.metadata.frames)
+        before, after = (self.curves[number] for number in pair)
+        length = max(1, round(_ENDS_SECONDS * self.recording.fps))
         return (
             before.between(max(before.first, before.last - length + 1), before.last),
             after.between(after.first, min(after.last, after.first + length - 1)),

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+from scipy import sparse
 
 from algorithm.trajectories import Trajectories
 
@@ -40,3 +41,20 @@ def random_rotation(seed: int, *, mirrored: bool = False) -> np.ndarray:
     if (np.linalg.det(matrix) < 0) != mirrored:
         matrix[:, 0] *= -1
     return matrix
+
+
+def blobs(sizes: list[int], bridge: float, seed: int = 0) -> sparse.csr_array:
+    """Dense groups, each tied to the next by one edge of the bridge's weight."""
+    weight = np.random.default_rng(seed).uniform(0.5, 1.0, (sum(sizes), sum(sizes)))
+    label = np.repeat(np.arange(len(sizes)), sizes)
+    weight *= label[:, None] == label
+    ends = np.cumsum(sizes)
+    for end in ends[:-1]:
+        weight[end - 1, end] = bridge
+    weight = np.triu(weight, 1)
+    return sparse.csr_array(weight + weight.T)
+
+
+def same_partition(one: np.ndarray, other: np.ndarray) -> bool:
+    """Whether the labels part alike, whatever their names."""
+    return bool(((one[:, None] == one) == (other[:, None] == other)).all())

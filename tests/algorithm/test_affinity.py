@@ -15,9 +15,8 @@ from algorithm.affinity import (
     affinity_matrix,
     neighbour_pairs,
     pair_statistics,
-    product_affinity,
     product_distance,
-    spread_affinity,
+    similarity,
 )
 from algorithm.trajectories import Trajectories
 
@@ -39,8 +38,8 @@ def test_statistics_are_those_of_a_naive_loop(seed: int) -> None:
         common = sorted(places[0].keys() & places[1].keys())
         distance = np.array([np.linalg.norm(places[0][frame] - places[1][frame]) for frame in common])
         assert found.overlap[index] == len(common)
-        values = [getattr(found, name)[index] for name in ("largest", "smallest", "mean", "variance")]
-        expected = [distance.max(), distance.min(), distance.mean(), distance.var()] if common else [np.nan] * 4
+        values = [getattr(found, name)[index] for name in ("largest", "mean", "variance")]
+        expected = [distance.max(), distance.mean(), distance.var()] if common else [np.nan] * 3
         np.testing.assert_allclose(values, expected, atol=1e-9)
 
 
@@ -53,28 +52,23 @@ def test_statistics_in_parts_are_the_same(monkeypatch: pytest.MonkeyPatch) -> No
     np.testing.assert_array_equal(parts.variance, whole.variance)
 
 
-def statistics(*, overlap: int, largest: float, smallest: float, mean: float, variance: float) -> PairStatistics:
+def statistics(*, overlap: int, largest: float, mean: float, variance: float) -> PairStatistics:
     return PairStatistics(
         overlap=np.array([overlap]),
         largest=np.array([largest]),
-        smallest=np.array([smallest]),
         mean=np.array([mean]),
         variance=np.array([variance]),
     )
 
 
 def test_the_product_is_the_papers_formula() -> None:
-    pair = statistics(overlap=5, largest=0.6, smallest=0.2, mean=0.4, variance=0.02)
+    pair = statistics(overlap=5, largest=0.6, mean=0.4, variance=0.02)
     # In spacings of 0.2 m: max 3, avg 2, var 0.5; 9 * 4 * 0.25 / 5.
     np.testing.assert_allclose(product_distance(pair, unit_m=0.2), [1.8])
-    np.testing.assert_allclose(product_affinity(pair, unit_m=0.2, eps3=3.0), [1 / 1.6])
-    np.testing.assert_array_equal(product_affinity(pair, unit_m=0.2, eps3=1.7), [0.0])
 
 
-def test_the_spread_is_the_change_of_the_distance() -> None:
-    pair = statistics(overlap=15, largest=0.6, smallest=0.2, mean=0.4, variance=0.02)
-    np.testing.assert_allclose(spread_affinity(pair, unit_m=0.2, eps3=4.0), [15 / 20 / 1.5])
-    np.testing.assert_array_equal(spread_affinity(pair, unit_m=0.2, eps3=1.9), [0.0])
+def test_the_similarity_falls_from_one_to_a_half_at_epsilon_3() -> None:
+    np.testing.assert_allclose(similarity(np.array([0.0, 1.5, 3.0]), eps3=3.0), [1.0, 2 / 3, 0.5])
 
 
 def test_two_in_step_are_one_to_the_product_however_far_apart() -> None:
@@ -87,23 +81,30 @@ def test_two_in_step_are_one_to_the_product_however_far_apart() -> None:
     assert distance[0] < 1e-9 < distance[1]
 
 
-@pytest.mark.parametrize("measure", [product_affinity, spread_affinity])
-def test_without_a_common_frame_there_is_no_affinity(measure) -> None:
-    made = trajectories_of([(0, line([0, 0, 1], [0, 0, 0], 5)), (5, line([0, 0, 1], [0, 0, 0], 5))])
-    found = pair_statistics(made, (np.array([0]), np.array([1])))
-    assert found.overlap[0] == 0
-    np.testing.assert_array_equal(measure(found, unit_m=0.02, eps3=10.0), [0.0])
+def test_without_a_common_frame_there_is_no_distance_and_with_one_it_is_zero() -> None:
+    still = line([0, 0, 1], [0, 0, 0], 5)
+    made = trajectories_of([(0, still), (5, still), (4, still + 1.0)])
+    found = pair_statistics(made, (np.array([0, 0]), np.array([1, 2])))
+    np.testing.assert_array_equal(found.overlap, [0, 1])
+    np.testing.assert_array_equal(product_distance(found, unit_m=0.02), [np.nan, 0.0])
 
 
 @given(seeds, st.booleans())
 def test_turning_moving_and_mirroring_the_world_change_nothing(seed: int, mirrored: bool) -> None:
     made = trajectories_of(random_paths(seed))
     moved = replace(made, position=made.position @ random_rotation(seed, mirrored=mirrored).T + [3.0, -2.0, 9.0])
-    for measure in (product_affinity, spread_affinity):
-        one, other = (
-            measure(pair_statistics(world, all_pairs(made.count)), unit_m=1.0, eps3=50.0) for world in (made, moved)
-        )
-        np.testing.assert_allclose(other, one, atol=1e-6)
+    one, other = (
+        product_distance(pair_statistics(world, all_pairs(made.count)), unit_m=1.0) for world in (made, moved)
+    )
+    np.testing.assert_allclose(other, one, rtol=1e-6, atol=1e-9)
+
+
+@given(seeds, st.sampled_from([0.01, 50.0]))
+def test_in_point_spacings_the_unit_of_length_does_not_matter(seed: int, scale: float) -> None:
+    made = trajectories_of(random_paths(seed))
+    larger = pair_statistics(replace(made, position=scale * made.position), all_pairs(made.count))
+    expected = product_distance(pair_statistics(made, all_pairs(made.count)), unit_m=0.1)
+    np.testing.assert_allclose(product_distance(larger, unit_m=0.1 * scale), expected, rtol=1e-6, atol=1e-9)
 
 
 @given(seeds)
@@ -148,8 +149,7 @@ def test_no_one_has_no_neighbours(count: int) -> None:
     assert len(pair_statistics(made, (first, second)).mean) == 0
 
 
-def test_the_matrix_is_symmetric_and_holds_what_is_above_zero() -> None:
-    pairs = (np.array([0, 0, 1]), np.array([1, 2, 2]))
-    matrix = affinity_matrix(pairs, np.array([0.5, 0.0, 0.25]), count=4)
+def test_the_matrix_is_symmetric() -> None:
+    matrix = affinity_matrix((np.array([0, 1]), np.array([1, 2])), np.array([0.5, 0.25]), count=4)
     np.testing.assert_array_equal(matrix.toarray(), [[0, 0.5, 0, 0], [0.5, 0, 0.25, 0], [0, 0.25, 0, 0], [0, 0, 0, 0]])
     assert matrix.nnz == 4

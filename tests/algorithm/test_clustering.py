@@ -1,155 +1,100 @@
-"""Affinities cut into segments."""
+"""Trajectories become segments as in the paper."""
 
-from itertools import pairwise
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
+from hypothesis import settings as few
 from hypothesis import strategies as st
-from made import line, trajectories_of
-from scipy import sparse
+from made import line, random_rotation, same_partition, trajectories_of
 
-from algorithm import clustering
-from algorithm.clustering import cut_at_eigengap, cut_while_cheap, followers, normalised_cut, without_small
+from algorithm.clustering import clustered, followers, without_small
+from algorithm.settings import Settings
+from algorithm.stopwatch import Stopwatch
+from algorithm.trajectories import Trajectories
 
-METHODS = {
-    "cheap": lambda graph: cut_while_cheap(graph, cut_below=0.1, smallest=2),
-    "eigengap": lambda graph: cut_at_eigengap(graph, most=10),
-}
+METHODS = ["spectral", "graph_merging"]
 seeds = st.integers(0, 2**32)
 
 
-def blobs(sizes: list[int], bridge: float, seed: int = 0) -> sparse.csr_array:
-    """Dense groups, each tied to the next by one edge of the bridge's weight."""
-    weight = np.random.default_rng(seed).uniform(0.5, 1.0, (sum(sizes), sum(sizes)))
-    label = np.repeat(np.arange(len(sizes)), sizes)
-    weight *= label[:, None] == label
-    ends = np.cumsum(sizes)
-    for end in ends[:-1]:
-        weight[end - 1, end] = bridge
-    weight = np.triu(weight, 1)
-    return sparse.csr_array(weight + weight.T)
-
-
-def same_partition(one: np.ndarray, other: np.ndarray) -> bool:
-    return bool(((one[:, None] == one) == (other[:, None] == other)).all())
-
-
-def cuts(graph: sparse.csr_array, side: np.ndarray) -> float:
-    """The normalised cut, from its definition."""
-    weight = graph.toarray()
-    cut = sum(weight[i, j] for i in np.flatnonzero(side) for j in np.flatnonzero(~side))
-    return float(cut / weight[side].sum() + cut / weight[~side].sum())
-
-
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("sizes", [[8, 8], [6, 15], [10, 10, 10, 10], [40, 60]])
-def test_blobs_with_weak_bridges_come_apart(method: str, sizes: list[int]) -> None:
-    label = METHODS[method](blobs(sizes, bridge=0.01))
-    assert same_partition(label, np.repeat(np.arange(len(sizes)), sizes))
-
-
-@pytest.mark.parametrize("sizes", [[20], [100]])
-def test_one_dense_blob_stays_whole_when_cuts_are_dear(sizes: list[int]) -> None:
-    assert len(np.unique(METHODS["cheap"](blobs(sizes, bridge=0.0)))) == 1
-
-
-def test_a_strong_bridge_is_not_cut() -> None:
-    assert len(np.unique(METHODS["cheap"](blobs([6, 6], bridge=30.0)))) == 1
-
-
-@settings(max_examples=20)
-@given(seeds, st.integers(2, 5), st.sampled_from([0.001, 0.01]))
-def test_the_eigengap_counts_well_separated_blobs(seed: int, count: int, bridge: float) -> None:
-    label = cut_at_eigengap(blobs([12] * count, bridge, seed), most=10)
-    assert same_partition(label, np.repeat(np.arange(count), 12))
-
-
-def test_no_more_segments_than_allowed() -> None:
-    assert len(np.unique(cut_at_eigengap(blobs([12] * 6, 0.01), most=3))) <= 3
-
-
-@given(seeds, st.integers(3, 12))
-def test_the_normalised_cut_is_that_of_its_definition(seed: int, count: int) -> None:
+def body(seed: int, centre: list[float], path: np.ndarray, points: int = 40) -> list[tuple[int, np.ndarray]]:
+    """Points of a soft body about a path, near one another, seen for most of it."""
     generator = np.random.default_rng(seed)
-    graph = blobs([count], 0.0, seed)
-    side = generator.permutation(np.arange(count) < generator.integers(1, count))
-    assert normalised_cut(graph, side) == pytest.approx(cuts(graph, side))
+    found = []
+    for offset in generator.uniform(-0.15, 0.15, (points, 3)):
+        begin, end = int(generator.integers(0, 5)), len(path) - int(generator.integers(0, 5))
+        wobble = 0.004 * generator.normal(size=(end - begin, 3))
+        found.append((begin, path[begin:end] + centre + offset + wobble))
+    return found
 
 
-@given(seeds, st.integers(4, 14), st.integers(1, 3))
-def test_the_cheapest_cut_is_that_of_a_naive_sweep(seed: int, count: int, smallest: int) -> None:
-    """Along the second eigenvector of the random walk's Laplacian, every cut that leaves enough members."""
-    if count < 2 * smallest:
-        return
-    graph = blobs([count // 2, count - count // 2], 0.3, seed)
-    found = clustering._cheapest_cut(graph, smallest)
-    assert found is not None
-    cost, side = found
-    weight = graph.toarray()
-    degree = weight.sum(axis=1)
-    value, vector = np.linalg.eigh(np.eye(count) - weight / np.sqrt(np.outer(degree, degree)))
-    order = np.argsort(vector[:, np.argsort(value)[1]] / np.sqrt(degree))
-    naive = [cuts(graph, np.isin(np.arange(count), order[:size])) for size in range(smallest, count - smallest + 1)]
-    assert cost == pytest.approx(min(naive))
-    assert cuts(graph, side) == pytest.approx(cost)
-    assert smallest <= side.sum() <= count - smallest
+def two_bodies(seed: int = 0) -> tuple[Trajectories, np.ndarray]:
+    """Two that pass each other a hand apart, and whose each trajectory is."""
+    step = np.array([0.04, 0.01, 0.0])
+    one = body(seed, [0.0, 0.0, 3.0], line([0, 0, 0], step.tolist(), 30))
+    other = body(seed + 1, [0.45, 0.45, 3.0], line([0, 0, 0], (-step).tolist(), 30))
+    return trajectories_of([*one, *other]), np.repeat([0, 1], 40)
+
+
+def segments_of(made: Trajectories, clustering: str, *, spacing_m: float = 0.02, **changes: object) -> np.ndarray:
+    known = {"clustering": clustering, "segment_count": 2, "merging_k": 1000.0, "eps3": 10.0, "eps4": 5.0, "eps5": 1}
+    return clustered(made, Settings.model_validate(known | changes), spacing_m, Stopwatch())
+
+
+@pytest.mark.parametrize("eps5", [1, 3])
+@pytest.mark.parametrize("method", METHODS)
+def test_two_that_pass_each_other_are_two_segments(method: str, eps5: int) -> None:
+    made, truth = two_bodies()
+    label = segments_of(made, method, eps5=eps5)
+    kept = label >= 0
+    assert same_partition(label[kept], truth[kept])
+    assert kept.mean() > 0.95
+    assert sorted(np.unique(label[kept])) == [0, 1]
 
 
 @pytest.mark.parametrize("method", METHODS)
-@settings(max_examples=20)
+@pytest.mark.parametrize("count", [0, 1])
+def test_no_one_and_a_single_trajectory_are_noise(method: str, count: int) -> None:
+    made = two_bodies()[0].chosen(np.arange(80) < count)
+    np.testing.assert_array_equal(segments_of(made, method), np.full(count, -1))
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_two_alike_and_far_apart_are_two(method: str) -> None:
+    path = line([0, 0, 0], [0.04, 0.01, 0.0], 30)
+    made = trajectories_of([*body(0, [0.0, 0.0, 3.0], path), *body(0, [0.0, 5.0, 3.0], path)])
+    assert same_partition(segments_of(made, method), np.repeat([0, 1], 40))
+
+
+@pytest.mark.parametrize("method", METHODS)
+@few(max_examples=8, deadline=None)
+@given(seed=seeds, mirrored=st.booleans())
+def test_turning_moving_and_mirroring_the_world_change_nothing(method: str, seed: int, mirrored: bool) -> None:
+    made, _ = two_bodies(seed % 5)
+    turned = made.position @ random_rotation(seed, mirrored=mirrored).T + [3.0, -2.0, 9.0]
+    moved = segments_of(replace(made, position=turned), method)
+    np.testing.assert_array_equal(moved, segments_of(made, method))
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("scale", [0.01, 30.0])
+def test_with_the_sizes_the_unit_of_length_does_not_matter(method: str, scale: float) -> None:
+    made, _ = two_bodies()
+    larger = replace(made, position=scale * made.position)
+    found = segments_of(larger, method, spacing_m=0.02 * scale, neighbour_radius_m=0.25 * scale)
+    np.testing.assert_array_equal(found, segments_of(made, method))
+
+
+@pytest.mark.parametrize("method", METHODS)
+@few(max_examples=8, deadline=None)
 @given(seed=seeds)
-def test_the_order_of_the_nodes_only_renames_the_segments(method: str, seed: int) -> None:
-    graph = blobs([7, 9, 11], 0.02, seed)
-    order = np.random.default_rng(seed).permutation(27)
-    assert same_partition(METHODS[method](graph[order][:, order]), METHODS[method](graph)[order])
-
-
-@pytest.mark.parametrize("method", METHODS)
-@given(seed=seeds)
-@settings(max_examples=20)
-def test_what_is_not_connected_stays_apart(method: str, seed: int) -> None:
-    graph = sparse.csr_array(sparse.block_diag([blobs([5], 0, seed), blobs([8, 8], 0.5, seed), np.zeros((1, 1))]))
-    label = METHODS[method](graph)
-    parts = [set(label[:5]), set(label[5:21]), set(label[21:])]
-    assert not any(parts[i] & parts[j] for i, j in ((0, 1), (0, 2), (1, 2)))
-    np.testing.assert_array_equal(np.unique(label), np.arange(label.max() + 1))
-
-
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("count", [0, 1, 2, 3, 4])
-def test_tiny_graphs_stay_whole(method: str, count: int) -> None:
-    full = np.ones((count, count)) - np.eye(count)
-    label = METHODS[method](sparse.csr_array(full))
-    assert label.shape == (count,)
-    if count != 4:  # The four-node graph has several second eigenvectors.
-        assert len(np.unique(label)) == min(count, 1)
-
-
-@pytest.mark.parametrize("method", METHODS)
-def test_isolated_nodes_are_segments_of_their_own(method: str) -> None:
-    label = METHODS[method](sparse.csr_array((5, 5)))
-    assert sorted(label) == [0, 1, 2, 3, 4]
-
-
-@pytest.mark.parametrize("smallest", [0, 1])
-def test_a_smallest_size_of_nothing_ends_too(smallest: int) -> None:
-    label = cut_while_cheap(blobs([6, 6], 0.01), cut_below=0.1, smallest=smallest)
-    assert same_partition(label, np.repeat([0, 1], 6))
-    apart = cut_while_cheap(blobs([3, 4], 0.01), cut_below=3.0, smallest=smallest)
-    assert len(np.unique(apart)) == 7
-
-
-def test_no_segment_is_cut_below_the_smallest_size() -> None:
-    label = cut_while_cheap(blobs([3, 12], 0.01), cut_below=0.2, smallest=4)
-    assert np.bincount(label).min() >= 4
-    assert len(np.unique(cut_while_cheap(blobs([8, 8], 0.01), cut_below=0.0, smallest=2))) == 1
-
-
-def test_a_large_graph_is_cut_as_a_small_one_is() -> None:
-    """Above some size the eigenvectors are found by iteration."""
-    label = METHODS["cheap"](blobs([90, 110], 0.01))
-    assert same_partition(label, np.repeat([0, 1], [90, 110]))
+def test_the_order_of_the_trajectories_only_renames_the_segments(method: str, seed: int) -> None:
+    made, _ = two_bodies()
+    paths = [(int(made.first_frame[number]), made.position[made.trajectory == number]) for number in range(made.count)]
+    order = np.random.default_rng(seed).permutation(made.count)
+    mixed = segments_of(trajectories_of([paths[number] for number in order]), method)
+    assert same_partition(mixed, segments_of(made, method)[order])
 
 
 def test_small_segments_become_noise_and_the_rest_is_numbered_anew() -> None:
@@ -175,10 +120,3 @@ def test_followers_take_the_label_of_the_nearest_in_their_middle_frame() -> None
     np.testing.assert_array_equal(label, [4, 7, 4, 7, -1])
     label = followers(made, np.array([True, True, False, False, False]), np.array([4, 7]), radius_m=0.25)
     np.testing.assert_array_equal(label, [4, 7, -1, 7, -1])
-
-
-def test_a_chain_is_cut_where_it_is_weakest() -> None:
-    weight = np.array([1.0, 1.0, 1.0, 0.01, 1.0, 1.0, 1.0])
-    graph = sparse.diags_array([weight, weight], offsets=[-1, 1]).tocsr()
-    label = cut_while_cheap(graph, cut_below=0.1, smallest=1)
-    assert [bool(one != other) for one, other in pairwise(label)] == [value == 0.01 for value in weight]

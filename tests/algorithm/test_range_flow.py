@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from worlds import Surface, box, depths_of, plane, small_camera, sphere
 
-from algorithm.depth_image import grey_image, shading_image, smoothed_depth
+from algorithm.depth_image import nearness_image, smoothed_depth
 from algorithm.range_flow import View, agreed, range_flow
 from algorithm.sampling import on_surface
 from recording.camera import pixel_grid
@@ -24,8 +24,7 @@ def views_of(surface: Surface, frames: int = 2) -> list[View]:
 def view_of(depth: np.ndarray) -> View:
     return View(
         surface=smoothed_depth(depth, similar_depth_m=0.1),
-        grey=grey_image(depth, within=(1.0, 5.0)),
-        start=shading_image(depth, camera=CAMERA, similar_depth_m=0.1),
+        image=nearness_image(depth, within=(1.0, 5.0)),
     )
 
 
@@ -106,12 +105,8 @@ def test_there_and_back_cancel() -> None:
 
 @pytest.mark.parametrize("shape", [(72, 96), (1, 1), (2, 50)])
 def test_empty_frames_have_no_flow(shape: tuple[int, int]) -> None:
-    nothing = View(
-        surface=np.full(shape, np.nan, np.float32), grey=np.zeros(shape, np.uint8), start=np.zeros(shape, np.uint8)
-    )
-    something = View(
-        surface=np.full(shape, 2.0, np.float32), grey=np.full(shape, 9, np.uint8), start=np.full(shape, 250, np.uint8)
-    )
+    nothing = View(surface=np.full(shape, np.nan, np.float32), image=np.zeros(shape, np.uint8))
+    something = View(surface=np.full(shape, 2.0, np.float32), image=np.full(shape, 250, np.uint8))
     for a, b in ((nothing, nothing), (nothing, something), (something, nothing)):
         flow = range_flow(a, b)
         assert flow.column_row.dtype == flow.depth.dtype == np.float32

@@ -87,6 +87,16 @@ def test_the_axes_of_the_world_do_not_matter(drift_frames: float, seed: int) -> 
     )
 
 
+@given(seeds, st.booleans(), st.sampled_from([0.01, 50.0]))
+def test_mirror_unit_and_order_do_not_matter(seed: int, mirrored: bool, scale: float) -> None:
+    paths = body(15, np.random.default_rng(seed).normal(size=(15, 3)).cumsum(axis=0), seed=seed)
+    matrix = scale * random_rotation(seed, mirrored=mirrored)
+    expected = representative(trajectories_of(paths)).position @ matrix.T
+    mixed = [paths[number] for number in np.random.default_rng(seed).permutation(len(paths))]
+    found = representative(trajectories_of([(first, path @ matrix.T) for first, path in mixed]))
+    np.testing.assert_allclose(found.position, expected, atol=1e-8 * scale)
+
+
 def test_a_single_point_in_a_single_frame_has_a_curve() -> None:
     curve = representative(trajectories_of([(7, np.array([[1.0, 2.0, 3.0]]))]), drift_frames=5.0)
     assert (curve.first, curve.last) == (7, 7)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from worlds import depths_of, plane, small_camera, sphere
+from worlds import box, depths_of, plane, small_camera, sphere
 
 from algorithm.static import background, usual_depth
 
@@ -81,6 +81,27 @@ def test_what_hides_the_wall_less_than_half_of_the_time_is_not_the_background() 
     still = background(depths, tolerance_m=0.03)
     np.testing.assert_array_equal(still.depth, 4.0)
     assert [bool(still.moving(depth).all()) for depth in depths] == [10 <= t < 22 for t in range(FRAMES)]
+
+
+def test_a_ball_that_comes_back_to_its_pixels_before_nothing_moves() -> None:
+    """It goes round in ten frames before a small board, and is as deep in a pixel each time."""
+    ball = sphere(lambda t: (0.6 * np.cos(0.2 * np.pi * t), 0.6 * np.sin(0.2 * np.pi * t), 2.0), 0.15)
+    board = box(lambda _: (0.0, 0.0, 2.5), (0.2, 0.2, 0.1))
+    depths, labels = depths_of([ball, board], CAMERA, FRAMES)
+    still = background(depths, tolerance_m=0.03)
+    for depth, label in zip(depths, labels, strict=True):
+        np.testing.assert_array_equal(still.moving(depth), label == 1)
+
+
+def test_what_swings_before_a_board_does_not_count_as_its_noise() -> None:
+    """The swing is seen in a third of the frames: more than a quarter, which decides how much a pixel scatters."""
+    board = np.full((10, 10), 4.0, np.float32)
+    depths = [board.copy() for _ in range(FRAMES)]
+    for t in range(0, FRAMES, 3):
+        depths[t][:5, :5] = 3.85
+    still = background(depths, tolerance_m=0.03)
+    for t, depth in enumerate(depths):
+        np.testing.assert_array_equal(still.moving(depth), depth < 3.9, err_msg=f"frame {t}")
 
 
 def test_missing_returns_do_not_move_and_do_not_matter() -> None:

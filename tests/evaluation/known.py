@@ -105,10 +105,11 @@ def all_noise(motions: Motions) -> Motions:
 
 
 def leaves(nested: dict[str, Any], prefix: str = "") -> dict[str, Any]:
-    """The numbers of nested scores by dotted key."""
+    """The numbers of nested scores by dotted key; entries of lists are numbered."""
     flat: dict[str, Any] = {}
     for key, value in nested.items():
-        flat |= leaves(value, f"{prefix}{key}.") if isinstance(value, dict) else {prefix + key: value}
+        inner = {str(number): each for number, each in enumerate(value)} if isinstance(value, list) else value
+        flat |= leaves(inner, f"{prefix}{key}.") if isinstance(inner, dict) else {prefix + key: inner}
     return flat
 
 

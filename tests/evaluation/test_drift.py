@@ -8,9 +8,8 @@ import pytest
 import unocclude
 from algorithm.given import Given
 from algorithm.lifting import SceneFlow
-from algorithm.pipeline import observed_trajectories
+from algorithm.pipeline import followed_points
 from algorithm.settings import Settings
-from algorithm.spacing import mean_point_spacing
 from algorithm.stopwatch import Stopwatch
 from algorithm.trajectories import Trajectories
 from evaluation.drift import drift_of
@@ -81,9 +80,8 @@ def test_short_trajectories_cover_nothing() -> None:
 
 def test_true_flow_drifts_less_than_our_own() -> None:
     recording, settings = wall(), Settings()
-    spacing = mean_point_spacing([frame.depth for frame in recording.frames], camera=recording.camera)
     drifts = [
-        drift_of(recording, observed_trajectories(recording, settings, spacing, Stopwatch(), given))
+        drift_of(recording, followed_points(recording, settings, Stopwatch(), given).trajectories)
         for given in (Given(), true_flow(recording))
     ]
     assert drifts[1].median_at(5) < 0.5 * drifts[0].median_at(5)

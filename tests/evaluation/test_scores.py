@@ -35,6 +35,10 @@ KEYS = {
     "completion": "hidden_object_frames recall median_m mean_m p95_m max_m within_1cm within_4cm within_16cm "
     "within_64cm centre_mean_m centre_max_m surface_coverage_10cm",
     "links": "precision recall",
+    "events": "count true",
+    "calibration": "right_links_above_90 "
+    "links.0.begin links.0.end links.0.count links.0.holding links.0.share "
+    "completed.0.begin completed.0.end completed.0.count completed.0.holding completed.0.share",
     "seconds": "flow match trajectories affinity clustering completion total",
 }
 SHARES = {

@@ -78,6 +78,21 @@ def test_values_that_contradict_each_other_are_refused(known: dict[str, Any]) ->
         metadata_of(small_camera(), frames=3, fps=30.0, **known)
 
 
+@pytest.mark.parametrize(
+    "carried",
+    [
+        {"object": 3, "by": 4, "first": 0, "stop": 2},
+        {"object": 4, "by": 3, "first": 0, "stop": 2},
+        {"object": 3, "by": 3, "first": 2, "stop": 2},
+        {"object": 3, "by": 3, "first": -1, "stop": 2},
+    ],
+)
+def test_what_is_carried_and_who_carries_it_are_objects_for_some_frames(carried: dict[str, int]) -> None:
+    ball = {"id": 3, "name": "ball", "kind": "ball", "moving": True}
+    with pytest.raises(ValidationError):
+        metadata_of(small_camera(), frames=3, fps=30.0, objects=(ball,), carried=(carried,))
+
+
 def world() -> Recording:
     return recorded([plane(lambda _: 4.0), sphere(lambda t: (0.1 * t, 0, 2), 0.3)], frames=3, moving=[False, True])
 

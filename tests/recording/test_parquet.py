@@ -14,7 +14,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from recording.errors import InputError
-from recording.motions import COLUMNS, INTER, INTRA, OBSERVED, Link, Making, Motions, Representative, mean_places
+from recording.motions import (
+    COLUMNS,
+    INTER,
+    INTRA,
+    OBSERVED,
+    Event,
+    Link,
+    Making,
+    Motions,
+    Representative,
+    mean_places,
+)
 from recording.parquet import load_motions, save_motions
 
 KINDS = {
@@ -47,7 +58,8 @@ def random_motions(count: int = 40, seed: int = 0) -> Motions:
         confidence=generator.random(count).astype(np.float32),
         representatives=(curve,),
         links=(Link(before=0, after=3, confidence=0.25),),
-        events=({"kind": "enters", "frame": 3},),
+        alternatives=(Link(before=0, after=4, confidence=0.125, chosen=False),),
+        events=(Event(kind="merge", frame=3, motions=(0, 2)),),
         making=Making(
             settings={"eps1": 0.5, "flow": "dis", "seed": None},
             recording_digest="abc",
@@ -62,6 +74,7 @@ def assert_same(one: Motions, other: Motions) -> None:
         np.testing.assert_array_equal(getattr(one, name), getattr(other, name), err_msg=name)
         assert getattr(one, name).dtype == getattr(other, name).dtype
     assert one.links == other.links
+    assert one.alternatives == other.alternatives
     assert one.events == other.events
     assert vars(one.making) == vars(other.making)
     assert len(one.representatives) == len(other.representatives)
@@ -84,9 +97,8 @@ def test_the_columns_have_the_kinds_of_the_contract(tmp_path: Path) -> None:
     assert {name: schema.field(name).type for name in KINDS} == KINDS
     assert pa.types.is_dictionary(schema.field("source").type)
     assert set(schema.names) == {*KINDS, "source"}
-    assert {b"settings", b"recording_digest", b"version", b"seconds", b"representatives", b"links", b"events"} <= set(
-        schema.metadata
-    )
+    names = "settings recording_digest version seconds representatives links alternatives events"
+    assert {name.encode() for name in names.split()} <= set(schema.metadata)
 
 
 def test_pandas_reads_it_as_it_is(tmp_path: Path) -> None:
@@ -188,6 +200,14 @@ def with_metadata(**metadata: str) -> Callable[[Path], None]:
     return make
 
 
+def test_a_file_from_before_alternatives_has_none(tmp_path: Path) -> None:
+    with_metadata(links='[{"before": 0, "after": 3, "confidence": 0.25}]')(tmp_path / "old.parquet")
+    old = load_motions(tmp_path / "old.parquet")
+    assert old.links == (Link(before=0, after=3, confidence=0.25),)
+    assert old.links[0].chosen
+    assert (old.alternatives, old.events) == ((), ())
+
+
 BAD_FILES: dict[str, tuple[Callable[[Path], object], str]] = {
     "empty": (lambda path: path.write_bytes(b""), "expected a Parquet file"),
     "text": (lambda path: path.write_text("frame,x\n1,2\n"), "expected a Parquet file"),
@@ -215,6 +235,22 @@ BAD_FILES: dict[str, tuple[Callable[[Path], object], str]] = {
     "settings of nothing": (with_metadata(settings='"default"'), "metadata is damaged: settings"),
     "a number as digest": (with_metadata(recording_digest="12"), "metadata is damaged: recording_digest"),
     "events of words": (with_metadata(events='["met"]'), "metadata is damaged: events"),
+    "an unknown event": (
+        with_metadata(events='[{"kind": "enters", "frame": 3, "motions": [0, 1]}]'),
+        "metadata is damaged: events.0.kind",
+    ),
+    "an event before the first frame": (
+        with_metadata(events='[{"kind": "split", "frame": -1, "motions": [0, 1]}]'),
+        "metadata is damaged: events.0.frame",
+    ),
+    "an event of one motion": (
+        with_metadata(events='[{"kind": "merge", "frame": 3, "motions": [1, 1]}]'),
+        "metadata is damaged: events.0: expected two different motions, got 1 twice",
+    ),
+    "an event of three motions": (
+        with_metadata(events='[{"kind": "merge", "frame": 3, "motions": [0, 1, 2]}]'),
+        "metadata is damaged: events.0.motions",
+    ),
 }
 
 
@@ -248,6 +284,7 @@ def test_chosen_rows_keep_what_belongs_to_them() -> None:
     assert 0 < len(some) < len(motions)
     assert (some.frame < 50).all()
     assert some.links == motions.links
+    assert (some.alternatives, some.events) == (motions.alternatives, motions.events)
     assert some.making == motions.making
     np.testing.assert_array_equal(motions.observed, motions.source == OBSERVED)
 

@@ -70,6 +70,22 @@ def test_times_vary_as_speeds_do() -> None:
     assert np.ptp(factors) > 0.15
 
 
+def test_together_everybody_changes_alike() -> None:
+    opposite = [
+        {"body": "man", "waypoints": [[-3, 1], [3, 1]], "speed": 1.2, "start": -1},
+        {"body": "teen", "waypoints": [[3, 2], [-3, 2]], "speed": 1.4},
+    ]
+    scene = scene_of(people=opposite, vary={"together": True})
+    for seed in SEEDS:
+        one, other = varied(scene, seed).people
+        assert one.waypoints[0][1] - 1 == pytest.approx(other.waypoints[0][1] - 2, abs=1e-3)
+        assert (one.speed or 0) / 1.2 == pytest.approx((other.speed or 0) / 1.4, abs=1e-3)
+        assert one.start + 1 == pytest.approx(other.start, abs=1e-3)
+        assert (one.phase, one.body) == (other.phase, other.body)
+    assert len({varied(scene, seed).people[0].body for seed in SEEDS}) == 4
+    assert varied(scene, 3) == varied(scene, 3)
+
+
 def test_nobody_varied_is_faster_than_people_walk() -> None:
     walk = {"body": "man", "waypoints": [[-1, 2], [1, 2]], "speed": 2.5}
     assert max(varied(scene_of(people=[walk]), seed).people[0].speed or 0 for seed in SEEDS) == 2.5

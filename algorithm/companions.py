@@ -1,0 +1,137 @@
+"""Step 6 of the default, second part: segments that go together at the same time are one body.
+
+What grouping leaves apart are limbs that nothing near keeps together with, and the two halves of a body that a
+thin trunk cuts. Both are near, move alike and together are no larger than a body. The paper has no such step.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+from scipy.spatial import cKDTree
+
+from algorithm.outlines import size_limits
+from algorithm.segment_frames import SegmentFrames
+from algorithm.settings import Settings
+
+_LEAST_FRAMES = 3
+"""Common frames that say anything of two segments."""
+_OFTEN = 0.95
+"""In so large a share of the common frames the union must be no larger than a body."""
+_DRIFT_SECONDS = 0.27
+"""From so much common time on the drift between two segments counts."""
+_FULL_SIZE_M = 0.8
+"""From this extent on the limits hold as they stand; half of a person is so large."""
+_LONG_SECONDS = 0.33
+"""Drift is measured over at least this time."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Meetings:
+    """Two rows of `SegmentFrames` in the same frame, sorted by pair."""
+
+    one: Int[np.ndarray, "meeting"]
+    other: Int[np.ndarray, "meeting"]
+    start: Int[np.ndarray, "pair"]
+    """Where each pair of segments begins."""
+
+
+def companions(rows: SegmentFrames, settings: Settings, *, fps: float) -> Int[np.ndarray, "segment"]:
+    """The body of every segment, from 0: segments that go together are united, the nearest first.
+
+    Two go together if over their common frames (three at least) the union has the size of a body, the median gap
+    between their boxes is at most `companion_gap_m`, one's centre never strays sideways more than
+    `companion_stray_m` from its mean place beside the other, and they drift apart slower than `companion_drift_m_per_s`. For what is small,
+    a ball, these limits shrink with its extent.
+    """
+    body = np.arange(rows.count)
+    while True:
+        cost, pair = _costs(rows, settings, fps)
+        name = _united(cost, pair, rows.count)
+        if name is None:
+            return body
+        rows, body = rows.renamed(name), name[body]
+
+
+def meetings(rows: SegmentFrames, *, reach_m: float) -> Meetings:
+    """The pairs of rows in one frame whose centres are at most `reach_m` apart."""
+    one, other = [np.zeros(0, int)], [np.zeros(0, int)]
+    order = np.argsort(rows.frame, kind="stable")
+    for part in np.split(order, np.flatnonzero(np.diff(rows.frame[order])) + 1):
+        if len(part) > 1:
+            near = cKDTree(rows.centre[part]).query_pairs(reach_m, output_type="ndarray")
+            low, high = np.sort(part[near], axis=1).T
+            one.append(low)
+            other.append(high)
+    first, second = np.concatenate(one), np.concatenate(other)
+    order = np.lexsort((rows.frame[first], rows.segment[second], rows.segment[first]))
+    first, second = first[order], second[order]
+    key = rows.segment[first] * rows.count + rows.segment[second]
+    start = np.flatnonzero(np.r_[True, np.diff(key) != 0]) if len(key) else np.zeros(0, int)
+    return Meetings(one=first, other=second, start=start)
+
+
+def union_fits(rows: SegmentFrames, met: Meetings, settings: Settings) -> Bool[np.ndarray, "meeting"]:
+    """Where both rows together are no larger than a body."""
+    extent = np.maximum(rows.high[met.one], rows.high[met.other]) - np.minimum(rows.low[met.one], rows.low[met.other])
+    return (extent <= size_limits(widest_m=settings.widest_m, tallest_m=settings.tallest_m)).all(axis=1)
+
+
+def gaps(rows: SegmentFrames, met: Meetings) -> Float[np.ndarray, "meeting"]:
+    """The largest gap between the two rows along any direction, metres; 0 where they overlap in all."""
+    apart = np.maximum(rows.low[met.one] - rows.high[met.other], rows.low[met.other] - rows.high[met.one])
+    return np.maximum(apart, 0.0).max(axis=1, initial=0.0)
+
+
+def _costs(
+    rows: SegmentFrames, settings: Settings, fps: float
+) -> tuple[Float[np.ndarray, "pair"], Int[np.ndarray, "pair 2"]]:
+    """The pairs that may be united, and how badly they go together, metres."""
+    met = meetings(rows, reach_m=settings.tallest_m)
+    if not len(met.start):
+        return np.zeros(0), np.zeros((0, 2), int)
+    frames = np.diff([*met.start, len(met.one)])
+    fits = np.add.reduceat(union_fits(rows, met, settings).astype(float), met.start) / frames
+    gap = _medians(gaps(rows, met), met.start, frames)
+    apart = rows.centre[met.one] - rows.centre[met.other]
+    mean = np.add.reduceat(apart, met.start, axis=0) / frames[:, None]
+    stray = np.maximum.reduceat(np.linalg.norm((apart - np.repeat(mean, frames, axis=0))[:, :2], axis=1), met.start)
+    away = np.linalg.norm(np.add.reduceat(rows.step[met.one] - rows.step[met.other], met.start, axis=0), axis=1)
+    drift = away / np.maximum(frames / fps, _LONG_SECONDS)
+    size = np.minimum(1.0, _extents(rows, met) / _FULL_SIZE_M)
+    good = (frames >= _LEAST_FRAMES) & (fits >= _OFTEN) & (gap <= size * settings.companion_gap_m)
+    good &= stray <= size * settings.companion_stray_m
+    good &= (drift <= size * settings.companion_drift_m_per_s) | (frames < _DRIFT_SECONDS * fps)
+    cost = gap + 0.5 * stray + 2.0 / 30.0 * fps / frames
+    pair = np.stack([rows.segment[met.one[met.start]], rows.segment[met.other[met.start]]], axis=1)
+    return cost[good], pair[good]
+
+
+def _extents(rows: SegmentFrames, met: Meetings) -> Float[np.ndarray, "pair"]:
+    """The larger one's largest extent in any of their common frames, metres."""
+    extent = (rows.high - rows.low).max(axis=1, initial=0.0)
+    return np.maximum.reduceat(np.maximum(extent[met.one], extent[met.other]), met.start)
+
+
+def _united(
+    cost: Float[np.ndarray, "pair"], pair: Int[np.ndarray, "pair 2"], count: int
+) -> Int[np.ndarray, "segment"] | None:
+    """New names after the cheapest pairs are united, each segment once; None where there is no pair."""
+    if not len(cost):
+        return None
+    name = np.arange(count)
+    free = np.ones(count, bool)
+    for one, other in pair[np.argsort(cost, kind="stable")].tolist():
+        if free[one] and free[other]:
+            free[[one, other]] = False
+            name[other] = one
+    return np.unique(name, return_inverse=True)[1]
+
+
+def _medians(
+    values: Float[np.ndarray, "meeting"], start: Int[np.ndarray, "pair"], count: Int[np.ndarray, "pair"]
+) -> Float[np.ndarray, "pair"]:
+    """The lower median of each pair's values."""
+    pair = np.repeat(np.arange(len(start)), count)
+    ordered = values[np.lexsort((values, pair))]
+    return ordered[start + (count - 1) // 2]

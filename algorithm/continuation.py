@@ -1,0 +1,127 @@
+"""Step 9 of the default, first part: how well one segment goes on as another.
+
+Both are laid on one smooth path (`path`); what they miss it by more than each its own is the price of the link.
+So what is known well, where someone went and how fast, counts, and what is not, the place of a sliver, does not.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from algorithm.companions import meetings, union_fits
+from algorithm.path import astray_m, evidence, full_area, smoothest
+from algorithm.segment_frames import SegmentFrames
+from algorithm.settings import Settings
+
+_PLACE_M, _SPEED_M_PER_S = 0.15, 0.15
+"""How well a segment's end tells its place and speed."""
+_SWING_M = 0.1
+"""Parts of a body swing by so much: seen for a short time, they tell little of its speed."""
+_ROOM_M, _SPEEDS_M_PER_S = 2.0, 1.0
+"""How far apart the places, and the speeds, of people are who have nothing to do with one another."""
+_TAIL = 4.0
+"""Degrees of freedom of Student's t: so surprising is a turn or a stop."""
+_HIDDEN_PRICE = 1.0
+"""Of a second of being hidden: holes are short more often than long."""
+_HEIGHT_M = 0.05
+"""Standard deviation of the height of a body between two segments."""
+_SEEN = 0.8
+"""Frames with more than this share of the full area show the height."""
+_EQUALLY_MUCH = 0.6
+"""Heights are compared if the smaller full area is at least this share of the larger one."""
+_OFTEN = 0.8
+"""In so large a share of the frames that two segments have in common their union must be no larger than a body."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Candidates:
+    """Links that are possible."""
+
+    before: Int[np.ndarray, "link"]
+    after: Int[np.ndarray, "link"]
+    price: Float[np.ndarray, "link"]
+    """Negative log of how much likelier one motion is than two: below 0 they rather are one."""
+
+
+def candidates(rows: SegmentFrames, settings: Settings, *, fps: float) -> Candidates:
+    """Which segment may go on as which, and at what price.
+
+    Segment b may follow a if it begins and ends after a does, at most `longest_hole_seconds` later, no farther than
+    `fastest_walk_m_per_s` leads, and is no larger with a than a body where they overlap in time.
+    """
+    ones = rows.singles()
+    before, after = _reachable(ones, settings, fps)
+    fits = _compatible(rows, before, after, settings)
+    before, after = before[fits], after[fits]
+    price = np.array(
+        [
+            _price(ones[a], ones[b], settings, fps) + _difference(ones[a], ones[b])
+            for a, b in zip(before.tolist(), after.tolist(), strict=True)
+        ]
+    ).reshape(-1)
+    return Candidates(before=before, after=after, price=price)
+
+
+def _reachable(
+    ones: list[SegmentFrames], settings: Settings, fps: float
+) -> tuple[Int[np.ndarray, "link"], Int[np.ndarray, "link"]]:
+    first = np.array([one.frame[0] for one in ones], int)
+    last = np.array([one.frame[-1] for one in ones], int)
+    begin = np.array([one.centre[0] for one in ones]).reshape(-1, 3)
+    end = np.array([one.centre[-1] for one in ones]).reshape(-1, 3)
+    gap = first[None, :] - last[:, None]
+    later = (first[None, :] > first[:, None]) & (last[None, :] > last[:, None])
+    timely = later & (gap <= settings.longest_hole_seconds * fps) & (gap >= -settings.longest_overlap_seconds * fps)
+    before, after = np.nonzero(timely)
+    far = np.linalg.norm(begin[after] - end[before], axis=1)
+    reach = settings.tallest_m + settings.fastest_walk_m_per_s * np.maximum(gap[before, after], 1) / fps
+    return before[far <= reach], after[far <= reach]
+
+
+def _compatible(
+    rows: SegmentFrames, before: Int[np.ndarray, "link"], after: Int[np.ndarray, "link"], settings: Settings
+) -> np.ndarray:
+    """Which pairs are no larger than a body in most of their common frames; those without any are."""
+    met = meetings(rows, reach_m=np.inf)
+    frames = np.diff([*met.start, len(met.one)])
+    fits = np.add.reduceat(union_fits(rows, met, settings).astype(float), met.start) / frames if len(frames) else frames
+    key = rows.segment[met.one[met.start]] * rows.count + rows.segment[met.other[met.start]]
+    wanted = np.minimum(before, after) * rows.count + np.maximum(before, after)
+    place = np.minimum(np.searchsorted(key, wanted), max(len(key) - 1, 0))
+    if not len(key):
+        return np.ones(len(before), bool)
+    return (key[place] != wanted) | (fits[place] >= _OFTEN)
+
+
+def _price(one: SegmentFrames, other: SegmentFrames, settings: Settings, fps: float) -> float:
+    """The price of one path for both, by place and speed."""
+    both = SegmentFrames.together(one, other)
+    area = full_area(both)
+    restlessness = settings.restlessness_of_links
+    misses = [
+        smoothest(evidence(rows, full_area=area, fps=fps), fps=fps, restlessness=restlessness)[1]
+        for rows in (both, one, other)
+    ]
+    missed = max(misses[0] - misses[1] - misses[2], 0.0)
+    hidden = max(float(other.frame[0] - one.frame[-1]), 1.0) / fps
+    place = _PLACE_M**2 + restlessness * hidden**3 / 3.0
+    speed = _SPEED_M_PER_S**2 + restlessness * hidden
+    for rows in (one, other):
+        place += float(np.mean(astray_m(rows.area.max(keepdims=True) / area)[0, :2] ** 2))
+        speed += (_SWING_M * fps / len(rows.frame)) ** 2
+    surprise = (_TAIL + 4.0) / 2.0 * np.log1p(missed / _TAIL)
+    surprise += _HIDDEN_PRICE * hidden
+    return float(surprise + np.log(min(place / _ROOM_M**2, 1.0)) + np.log(min(speed / _SPEEDS_M_PER_S**2, 1.0)))
+
+
+def _difference(one: SegmentFrames, other: SegmentFrames) -> float:
+    """The price of the heights that two bodies reach up to; 0 where they do not show equally much of themselves."""
+    areas = full_area(one), full_area(other)
+    if min(areas) < _EQUALLY_MUCH * max(areas):
+        return 0.0
+    tops = [
+        float(np.median(rows.high[rows.area >= _SEEN * area, -1]))
+        for rows, area in zip((one, other), areas, strict=True)
+    ]
+    return float(2.5 * np.log1p((tops[0] - tops[1]) ** 2 / (4 * _HEIGHT_M**2)))

@@ -1,0 +1,145 @@
+"""How the points of a motion swing about its representative: the gait of somebody who walks.
+
+Without its swing a body is rigid, so all else treats it as such: places are taken into axes that go with it, the
+swing is taken out of them (`Gait.calmed`), they are completed, and the swing is put back (`Gait.restored`).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float, Int
+from scipy.ndimage import gaussian_filter1d
+
+from algorithm.body_axes import body_axes
+from algorithm.orbits import (
+    Orbits,
+    fitted_prior,
+    harmonics,
+    moments_of,
+    orbits_by_examples,
+    orbits_by_prior,
+)
+from algorithm.period import period_frames
+from algorithm.representative import Curve
+from algorithm.steadied import steadied
+from algorithm.trajectories import Trajectories
+
+_EXAMPLES = 400
+"""Trajectories that the gait is learned from, the longest likeliest."""
+_FEWEST = 60
+"""With fewer nothing can be learned."""
+_CORRECTIONS = 2
+"""How often the representative is corrected by what the points' orbits leave over."""
+_CORRECTED_OVER_SECONDS = 0.12
+_DOUBT = 20.0
+"""A frame's correction is halved where only so many examples speak for it."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Gait:
+    """The swing of every trajectory of a motion."""
+
+    period_frames: float
+    axes: Float[np.ndarray, "moment 3 3"]
+    """Rotations world_from_body."""
+    carrier: Curve
+    """The representative, without what it swings itself."""
+    orbits: Orbits
+    """In body axes about the carrier, a trajectory each."""
+
+    def swing(
+        self, trajectory: Int[np.ndarray, "place"], frame: Int[np.ndarray, "place"]
+    ) -> Float[np.ndarray, "place 3"]:
+        """How far the trajectories' points are from their mean places, body axes, metres."""
+        basis = harmonics(frame, period_frames=self.period_frames)[:, 1:]
+        return np.einsum("ph,phx->px", basis, self.orbits[trajectory, 1:])
+
+    def calmed(self, trajectories: Trajectories) -> Trajectories:
+        """The trajectories in body axes about the carrier, without their swing: a rigid body that stands still."""
+        place = _in_body(trajectories, self.carrier, self.axes)
+        calm = place - self.swing(trajectories.trajectory, trajectories.frame)
+        return Trajectories(
+            trajectory=trajectories.trajectory,
+            frame=trajectories.frame,
+            position=calm,
+            column_row=trajectories.column_row,
+        )
+
+    def restored(
+        self, place: Float[np.ndarray, "place 3"], frame: Int[np.ndarray, "place"]
+    ) -> Float[np.ndarray, "place 3"]:
+        """Places in body axes, swing included, in world axes; metres."""
+        moment = frame - self.carrier.first
+        return self.carrier.position[moment] + np.einsum("pij,pj->pi", self.axes[moment], place)
+
+
+def found_gait(trajectories: Trajectories, curve: Curve, *, fps: float, spacing_m: float) -> Gait | None:
+    """The gait of a motion; None where it has none, or shows too little of it.
+
+    Learned of the motion itself and of nothing else: the period (`period`), how the orbits of its points are
+    distributed (`orbits.fitted_prior`), the orbits of a few hundred of them, each with the help of the others,
+    and by these the orbit of every point. What is left over and common to all points of a frame is an error of the
+    representative, and is taken off it; where little is seen the path is drawn anew.
+    """
+    if trajectories.count < _FEWEST:
+        return None
+    axes = body_axes(curve, fps=fps)
+    place = _in_body(trajectories, curve, axes)
+    period = period_frames(trajectories, place, fps=fps)
+    if period is None:
+        return None
+    chosen = _examples(trajectories)
+    carrier = curve
+    for corrections_left in range(_CORRECTIONS, -1, -1):
+        known = moments_of(place, trajectories.frame, trajectories.first_row, period_frames=period)
+        shown = known.chosen(chosen)
+        prior = fitted_prior(shown, least_noise_m=spacing_m)
+        weight = shown.length**2
+        examples = orbits_by_examples(shown, orbits_by_prior(shown, prior), weight, prior, themselves=True)
+        if corrections_left:
+            carrier = _corrected(carrier, axes, (trajectories, place), (chosen, examples), (period, fps))
+            place = _in_body(trajectories, carrier, axes)
+    orbits = orbits_by_examples(known, examples, weight, prior)
+    return Gait(period_frames=period, axes=axes, carrier=steadied(carrier, fps=fps), orbits=orbits)
+
+
+def _in_body(trajectories: Trajectories, curve: Curve, axes: np.ndarray) -> Float[np.ndarray, "observation 3"]:
+    """The trajectories' places about the curve in body axes, metres."""
+    moment = trajectories.frame - curve.first
+    return np.einsum("pji,pj->pi", axes[moment], trajectories.position - curve.position[moment])
+
+
+def _examples(trajectories: Trajectories) -> Int[np.ndarray, "example"]:
+    """Trajectories evenly spread over all observations: the longer one is, the likelier it is among them."""
+    total = np.cumsum(trajectories.length)
+    sought = (np.arange(_EXAMPLES) + 0.5) / _EXAMPLES * total[-1]
+    return np.unique(np.searchsorted(total, sought))
+
+
+def _corrected(
+    curve: Curve,
+    axes: np.ndarray,
+    seen: tuple[Trajectories, np.ndarray],
+    known: tuple[np.ndarray, Orbits],
+    timing: tuple[float, float],
+) -> Curve:
+    """The curve moved by what the examples' orbits leave over, smoothed, as far as there are examples."""
+    trajectories, place = seen
+    chosen, examples = known
+    period, fps = timing
+    index = np.full(trajectories.count, -1)
+    index[chosen] = np.arange(len(chosen))
+    rows = np.flatnonzero(index[trajectories.trajectory] >= 0)
+    moment = trajectories.frame[rows] - curve.first
+    basis = harmonics(trajectories.frame[rows], period_frames=period)
+    left = place[rows] - np.einsum("ph,phx->px", basis, examples[index[trajectories.trajectory[rows]]])
+    size = len(curve.position)
+    count = np.bincount(moment, minlength=size).astype(float)
+    total = np.stack([np.bincount(moment, left[:, axis], size) for axis in range(3)], axis=1)
+    sigma = _CORRECTED_OVER_SECONDS * fps
+    near = gaussian_filter1d(count, sigma, mode="constant")
+    offset = gaussian_filter1d(total, sigma, axis=0, mode="constant") / (near + _DOUBT)[:, None]
+    seen_moments = np.flatnonzero(count > 0)
+    offset = np.stack([np.interp(np.arange(size), seen_moments, offset[seen_moments, axis]) for axis in range(3)], 1)
+    moved = curve.position + np.einsum("mij,mj->mi", axes, offset)
+    return Curve(first=curve.first, position=moved, points=curve.points)

@@ -1,0 +1,101 @@
+"""Algorithm 1 in four stages, each made at most once where a cache keeps what it made."""
+
+from dataclasses import dataclass, field
+
+from algorithm.given import NOTHING_GIVEN, Given
+from algorithm.kept_stages import FLOWING, grouped_form, observed_form
+from algorithm.moving_flows import moving_flows
+from algorithm.pipeline import completed_motions, footage_of, segmented, timed_flows, trajectories_along, with_patches
+from algorithm.result import motions_of
+from algorithm.scene_flow import flows_between
+from algorithm.settings import Settings
+from algorithm.spacing import mean_point_spacing
+from algorithm.stages import Flowing, Grouped, Observed, Stage, keys_of, readable, total_seconds
+from algorithm.stopwatch import Stopwatch
+from recording.cache import Cache, kept
+from recording.motions import Motions
+from recording.recording import Recording
+
+
+def solve(
+    recording: Recording,
+    settings: Settings | None = None,
+    given: Given = NOTHING_GIVEN,
+    cache: Cache | None = None,
+) -> Motions:
+    """The motions in a recording, completed where they were hidden.
+
+    Of the recording nothing but depths, camera and frame rate is read. What is `given` takes a stage's place. A stage
+    whose result the cache holds is not made again.
+    """
+    digest = recording.digest()
+    return Course(
+        recording=recording, digest=digest, settings=settings or Settings(), given=given, cache=cache
+    ).motions()
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Course:
+    """A recording under some settings, from stage to stage; a stage takes the result of the one before, or makes it."""
+
+    recording: Recording
+    digest: str
+    """The recording's."""
+    settings: Settings
+    given: Given = NOTHING_GIVEN
+    cache: Cache | None = None
+    keys: dict[Stage, str] = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "keys", keys_of(self.digest, self.settings))
+
+    def flowing(self) -> Flowing:
+        """How everything that moves moves from frame to frame (steps 0 to 2)."""
+        return kept(self._cache("flow"), self.keys["flow"], self._made_flowing, FLOWING)
+
+    def observed(self, flowing: Flowing | None = None) -> Observed:
+        """The points that move, followed for as long as they are seen (steps 3 and 4)."""
+        key, form = self.keys["trajectories"], observed_form(self.recording)
+        return kept(self._cache("trajectories"), key, lambda: self._made_observed(flowing or self.flowing()), form)
+
+    def grouped(self, observed: Observed | None = None) -> Grouped:
+        """Which of them move together (steps 5 and 6)."""
+        followed = observed or self.observed()
+        key = self.keys["segments"]
+        return kept(self._cache("segments"), key, lambda: self._made_grouped(followed), grouped_form(followed))
+
+    def motions(self, grouped: Grouped | None = None) -> Motions:
+        """What moves together, completed where it was hidden (steps 7 to 9)."""
+        together, watch = grouped or self.grouped(), Stopwatch()
+        with watch.stage("completion"):
+            solution = completed_motions(together.followed, together.segments, self.settings, self.given.links)
+        seconds = total_seconds(together.seconds, watch.by_stage())
+        return motions_of(solution, self.recording, self.settings, seconds)
+
+    def _made_flowing(self) -> Flowing:
+        watch, settings = Stopwatch(), readable(self.settings, "flow")
+        footage = footage_of(self.recording, settings)
+        flows = flows_between(footage, settings, self.given.flow)
+        every = moving_flows(timed_flows(flows, len(footage.moving), watch), footage.moving)
+        return Flowing(flows=every, seconds=watch.by_stage())
+
+    def _made_observed(self, flowing: Flowing) -> Observed:
+        watch, settings = Stopwatch(), readable(self.settings, "trajectories")
+        footage = footage_of(self.recording, settings)
+        spacing_m = mean_point_spacing(footage.sensed, camera=footage.camera)
+        trajectories = trajectories_along(flowing.flows.pairs(), footage, settings, spacing_m, watch)
+        followed = with_patches(trajectories, footage, settings, spacing_m, watch)
+        seconds = total_seconds(flowing.seconds, watch.by_stage())
+        return Observed(followed=followed, seconds=seconds)
+
+    def _made_grouped(self, observed: Observed) -> Grouped:
+        watch, settings = Stopwatch(), readable(self.settings, "segments")
+        given = self.given.segments
+        segments = given(observed.followed.trajectories) if given else segmented(observed.followed, settings, watch)
+        seconds = total_seconds(observed.seconds, watch.by_stage())
+        return Grouped(followed=observed.followed, segments=segments, seconds=seconds)
+
+    def _cache(self, stage: Stage) -> Cache | None:
+        """The cache, unless something was given to the stage or to one before it: no key says what."""
+        mended = self.given.flow is not None or (self.given.segments is not None and stage == "segments")
+        return None if mended else self.cache

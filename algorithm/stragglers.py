@@ -1,0 +1,94 @@
+"""Step 9 of the default, third part: what no link reached goes to the motion that it lies in.
+
+A foot seen under a table, or the sliver that shows between two people: too little to tell where it goes, yet where a
+motion's outline passes at the time.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from algorithm.outlines import reaches
+from algorithm.path import path
+from algorithm.representative import Curve
+from algorithm.segment_frames import SegmentFrames
+from algorithm.settings import Settings
+
+_SLACK = 0.3
+"""A straggler may stand out by this share of the outline's width."""
+_OFTEN = 0.7
+"""In so large a share of its frames a straggler must lie in the outline."""
+_LESS = 0.5
+"""A straggler shows at most this share of what its host shows."""
+_USUAL = 10, 90
+"""Percentiles of a body's reach from its path that make its outline."""
+_AHEAD_SECONDS = 0.3
+"""A path is drawn out so far beyond its ends."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Host:
+    """A motion that others may belong to."""
+
+    curve: Curve
+    low: Float[np.ndarray, "direction"]
+    """The outline's reach from the path, metres."""
+    high: Float[np.ndarray, "direction"]
+    shown: float
+    """Its area in all frames."""
+
+
+def gathered(rows: SegmentFrames, settings: Settings, *, fps: float) -> Int[np.ndarray, "motion"]:
+    """The motion that each motion belongs to, itself if it is none's straggler; names are not made anew.
+
+    The rows are those of motions. Motion m is a straggler of h if it shows half as much at most and in 70 % of its
+    frames lies in h's outline, carried along h's path; of several the one whose path it keeps nearest to.
+    """
+    ones = rows.singles()
+    hosts = [_host(one, settings, fps) for one in ones]
+    order = sorted(range(len(ones)), key=lambda number: hosts[number].shown)
+    into = np.arange(len(ones))
+    for place, number in enumerate(order):
+        larger = [other for other in order[place + 1 :] if hosts[number].shown <= _LESS * hosts[other].shown]
+        distances = {other: _distance(ones[number], hosts[other], fps) for other in larger}
+        nearest = min(distances, key=lambda other: distances[other], default=number)
+        if distances.get(nearest, np.inf) < np.inf:
+            into[number] = nearest
+    for _ in range(len(ones)):
+        into = into[into]
+    return into
+
+
+def _host(one: SegmentFrames, settings: Settings, fps: float) -> Host:
+    curve = path(one, fps=fps, restlessness=settings.restlessness)
+    along = reaches(curve.position[one.frame - curve.first])
+    low = np.percentile(one.low - along, _USUAL[0], axis=0)
+    high = np.percentile(one.high - along, _USUAL[1], axis=0)
+    return Host(curve=curve, low=low, high=high, shown=float(one.area.sum()))
+
+
+def _distance(one: SegmentFrames, host: Host, fps: float) -> float:
+    """The mean distance of a motion's centre from the host's path, metres; infinite where it lies outside."""
+    curve = host.curve
+    reach = round(_AHEAD_SECONDS * fps)
+    common = (one.frame >= curve.first - reach) & (one.frame <= curve.last + reach)
+    if common.sum() < _OFTEN * len(one.frame):
+        return np.inf
+    place = _places(curve, one.frame[common])
+    along = reaches(place)
+    slack = _SLACK * (host.high - host.low)
+    inside = (one.low[common] - along >= host.low - slack) & (one.high[common] - along <= host.high + slack)
+    if inside.all(axis=1).sum() < _OFTEN * len(one.frame):
+        return np.inf
+    return float(np.linalg.norm(one.centre[common] - place, axis=1).mean())
+
+
+def _places(curve: Curve, frame: Int[np.ndarray, "moment"]) -> Float[np.ndarray, "moment 3"]:
+    """The curve's places, drawn out straight beyond its ends."""
+    inside = np.clip(frame, curve.first, curve.last)
+    place = curve.position[inside - curve.first]
+    if len(curve.position) > 1:
+        place = place + np.minimum(frame - curve.first, 0)[:, None] * (curve.position[1] - curve.position[0])
+        place = place + np.maximum(frame - curve.last, 0)[:, None] * (curve.position[-1] - curve.position[-2])
+    return place
