@@ -15,11 +15,12 @@ import sys
 try:
     from cyclopts import App
 
-    from algorithm.pipeline import solve
     from algorithm.settings import Settings, preset_settings
+    from algorithm.staged import solve
     from commands import drawing, judging, making, solving, starting, sweeping
     from commands.common import run
     from evaluation.scores import evaluate
+    from recording.cache import Cache
     from recording.causes import causes_of
     from recording.correspondence import flow_between, places_of, track
     from recording.errors import InputError
@@ -41,6 +42,7 @@ except KeyboardInterrupt:  # Importing takes a second or more; Ctrl-C ends it as
     sys.exit(130)
 
 __all__ = [
+    "Cache",
     "InputError",
     "Motions",
     "Order",
@@ -72,6 +74,7 @@ app = App(
     help="Simulate crowds before a depth camera, find what moves together, complete what was hidden.",
     version=VERSION,
     help_format="markdown",
+    suppress_keyboard_interrupt=False,  # `run` says that nothing half-written is left.
 )
 app.command(starting.demo_command, name="demo")
 app.command(making.simulate_command, name="simulate", help_epilogue=making.SCENES_HELP)

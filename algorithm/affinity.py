@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 from algorithm.trajectories import Trajectories
 
 _ROWS_AT_ONCE = 2_000_000
+_KEYS_AT_ONCE = 1_000_000
 
 IndexPairs = tuple[Int[np.ndarray, "pair"], Int[np.ndarray, "pair"]]
 
@@ -31,7 +32,7 @@ def neighbour_pairs(trajectories: Trajectories, *, neighbours: int, radius_m: fl
     Near means one of the `neighbours` nearest within `radius_m`. Pairs that never meet need no affinity:
     that keeps the cost linear in the number of trajectories.
     """
-    keys = [np.zeros(0, np.int64)]
+    known, fresh, waiting = np.zeros(0, np.int64), [], 0
     order = np.argsort(trajectories.frame, kind="stable")
     for rows in np.split(order, np.flatnonzero(np.diff(trajectories.frame[order])) + 1):
         if len(rows) < 2:
@@ -42,9 +43,18 @@ def neighbour_pairs(trajectories: Trajectories, *, neighbours: int, radius_m: fl
         near = np.isfinite(distance) & (other != np.arange(len(rows))[:, None])
         first = np.broadcast_to(number[:, None], near.shape)[near]
         second = number[other[near]]
-        keys.append(np.unique(np.minimum(first, second) * trajectories.count + np.maximum(first, second)))
-    key = np.unique(np.concatenate(keys))
+        fresh.append(_each_once(np.minimum(first, second) * trajectories.count + np.maximum(first, second)))
+        waiting += len(fresh[-1])
+        if waiting > max(len(known), _KEYS_AT_ONCE):  # So the same pairs of many frames are not kept all at once.
+            known, fresh, waiting = _each_once(np.concatenate([known, *fresh])), [], 0
+    key = _each_once(np.concatenate([known, *fresh]))
     return key // max(trajectories.count, 1), key % max(trajectories.count, 1)
+
+
+def _each_once(key: Int[np.ndarray, "key"]) -> Int[np.ndarray, "once"]:
+    """The keys in order, each once. NumPy's `unique` hashes them, which takes ten times as long."""
+    key = np.sort(key)
+    return key[np.diff(key, prepend=-1) != 0]
 
 
 def pair_statistics(trajectories: Trajectories, pairs: IndexPairs) -> PairStatistics:

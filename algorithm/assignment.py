@@ -35,7 +35,7 @@ def cheapest_assignment(
 
 
 @compiled
-def _pair_of_rows(
+def _pair_of_rows(  # noqa: C901, PLR0912, PLR0915 - one search in one loop: compiled code hands no state around
     start: np.ndarray, goal: np.ndarray, cost: np.ndarray, columns: int, alone: float
 ) -> np.ndarray:  # pragma: no cover
     """The pair chosen for every row, -1 where it stays alone; row i has the pairs start[i] to start[i + 1]."""

@@ -1,5 +1,7 @@
 """Axes that turn with a path, so that what moves along it is seen from beside."""
 
+from itertools import pairwise
+
 import numpy as np
 from jaxtyping import Float
 from scipy.ndimage import gaussian_filter1d
@@ -21,7 +23,7 @@ def body_axes(curve: Curve, *, fps: float) -> Float[np.ndarray, "moment 3 3"]:
     """
     heading = _headings(curve, fps)
     axes = [np.eye(3)]
-    for before, after in zip(heading[:-1], heading[1:], strict=True):
+    for before, after in pairwise(heading):
         axes.append(_least_rotation(before, after) @ axes[-1])
     return np.array(axes)
 

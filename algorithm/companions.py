@@ -18,12 +18,10 @@ _LEAST_FRAMES = 3
 """Common frames that say anything of two segments."""
 _OFTEN = 0.95
 """In so large a share of the common frames the union must be no larger than a body."""
-_DRIFT_SECONDS = 0.27
-"""From so much common time on the drift between two segments counts."""
+_STRAY = 0.45
+"""What strays less about the other, by this share of the extent, may also be fast: a swinging limb."""
 _FULL_SIZE_M = 0.8
 """From this extent on the limits hold as they stand; half of a person is so large."""
-_LONG_SECONDS = 0.33
-"""Drift is measured over at least this time."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -40,9 +38,9 @@ def companions(rows: SegmentFrames, settings: Settings, *, fps: float) -> Int[np
     """The body of every segment, from 0: segments that go together are united, the nearest first.
 
     Two go together if over their common frames (three at least) the union has the size of a body, the median gap
-    between their boxes is at most `companion_gap_m`, one's centre never strays sideways more than
-    `companion_stray_m` from its mean place beside the other, and they drift apart slower than `companion_drift_m_per_s`. For what is small,
-    a ball, these limits shrink with its extent.
+    between their boxes is at most `companion_gap_m`, and one's centre never strays sideways more than
+    `companion_stray_m` from its mean place beside the other; for what is small these two shrink with its extent. And
+    it must not stray at all, or move about the other slower than `companion_speed_m_per_s` (root mean square).
     """
     body = np.arange(rows.count)
     while True:
@@ -95,13 +93,16 @@ def _costs(
     gap = _medians(gaps(rows, met), met.start, frames)
     apart = rows.centre[met.one] - rows.centre[met.other]
     mean = np.add.reduceat(apart, met.start, axis=0) / frames[:, None]
-    stray = np.maximum.reduceat(np.linalg.norm((apart - np.repeat(mean, frames, axis=0))[:, :2], axis=1), met.start)
-    away = np.linalg.norm(np.add.reduceat(rows.step[met.one] - rows.step[met.other], met.start, axis=0), axis=1)
-    drift = away / np.maximum(frames / fps, _LONG_SECONDS)
-    size = np.minimum(1.0, _extents(rows, met) / _FULL_SIZE_M)
+    beside = apart - np.repeat(mean, frames, axis=0)
+    stray = np.maximum.reduceat(np.linalg.norm(beside[:, :2], axis=1), met.start)
+    squares = np.sum((rows.step[met.one] - rows.step[met.other]) ** 2, axis=1)
+    speed = fps * np.sqrt(np.add.reduceat(squares, met.start) / frames)
+    extent = _extents(rows, met)
+    size = np.minimum(1.0, extent / _FULL_SIZE_M)
     good = (frames >= _LEAST_FRAMES) & (fits >= _OFTEN) & (gap <= size * settings.companion_gap_m)
     good &= stray <= size * settings.companion_stray_m
-    good &= (drift <= size * settings.companion_drift_m_per_s) | (frames < _DRIFT_SECONDS * fps)
+    whole = np.maximum.reduceat(np.linalg.norm(beside, axis=1), met.start)
+    good &= (whole <= _STRAY * extent) | (speed <= settings.companion_speed_m_per_s)
     cost = gap + 0.5 * stray + 2.0 / 30.0 * fps / frames
     pair = np.stack([rows.segment[met.one[met.start]], rows.segment[met.other[met.start]]], axis=1)
     return cost[good], pair[good]

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Int
 
-from algorithm.companions import meetings, union_fits
+from algorithm.outlines import size_limits
 from algorithm.path import astray_m, evidence, full_area, smoothest
+from algorithm.restlessness import shown_restlessness
 from algorithm.segment_frames import SegmentFrames
 from algorithm.settings import Settings
 
@@ -20,6 +21,8 @@ _SWING_M = 0.1
 """Parts of a body swing by so much: seen for a short time, they tell little of its speed."""
 _ROOM_M, _SPEEDS_M_PER_S = 2.0, 1.0
 """How far apart the places, and the speeds, of people are who have nothing to do with one another."""
+_TURNS = 2.5
+"""What is hidden may be so much more restless than what is seen: a ball in a hand."""
 _TAIL = 4.0
 """Degrees of freedom of Student's t: so surprising is a turn or a stop."""
 _HIDDEN_PRICE = 1.0
@@ -30,6 +33,10 @@ _SEEN = 0.8
 """Frames with more than this share of the full area show the height."""
 _EQUALLY_MUCH = 0.6
 """Heights are compared if the smaller full area is at least this share of the larger one."""
+_OVERLAP = 0.5
+"""So large a share of the shorter of two segments of one body may be seen at the same time as the other."""
+_SHOWN_TWICE = 1.3
+"""Two parts of one body that are seen at the same time show so much of its full area at the most."""
 _OFTEN = 0.8
 """In so large a share of the frames that two segments have in common their union must be no larger than a body."""
 
@@ -52,12 +59,17 @@ def candidates(rows: SegmentFrames, settings: Settings, *, fps: float) -> Candid
     """
     ones = rows.singles()
     before, after = _reachable(ones, settings, fps)
-    fits = _compatible(rows, before, after, settings)
+    fits = np.array(
+        [_one_body(ones[a], ones[b], settings) for a, b in zip(before.tolist(), after.tolist(), strict=True)], bool
+    )
     before, after = before[fits], after[fits]
+    shown = np.array([shown_restlessness(one, fps=fps) for one in ones])
+    changes = np.nan_to_num(_TURNS * np.fmin(shown[before], shown[after]))
+    restlessness = np.maximum(changes, settings.restlessness_of_links)
     price = np.array(
         [
-            _price(ones[a], ones[b], settings, fps) + _difference(ones[a], ones[b])
-            for a, b in zip(before.tolist(), after.tolist(), strict=True)
+            _price((ones[a], ones[b]), restless, fps) + _difference(ones[a], ones[b])
+            for a, b, restless in zip(before.tolist(), after.tolist(), restlessness.tolist(), strict=True)
         ]
     ).reshape(-1)
     return Candidates(before=before, after=after, price=price)
@@ -79,26 +91,29 @@ def _reachable(
     return before[far <= reach], after[far <= reach]
 
 
-def _compatible(
-    rows: SegmentFrames, before: Int[np.ndarray, "link"], after: Int[np.ndarray, "link"], settings: Settings
-) -> np.ndarray:
-    """Which pairs are no larger than a body in most of their common frames; those without any are."""
-    met = meetings(rows, reach_m=np.inf)
-    frames = np.diff([*met.start, len(met.one)])
-    fits = np.add.reduceat(union_fits(rows, met, settings).astype(float), met.start) / frames if len(frames) else frames
-    key = rows.segment[met.one[met.start]] * rows.count + rows.segment[met.other[met.start]]
-    wanted = np.minimum(before, after) * rows.count + np.maximum(before, after)
-    place = np.minimum(np.searchsorted(key, wanted), max(len(key) - 1, 0))
-    if not len(key):
-        return np.ones(len(before), bool)
-    return (key[place] != wanted) | (fits[place] >= _OFTEN)
+def _one_body(one: SegmentFrames, other: SegmentFrames, settings: Settings) -> bool:
+    """Whether two segments can be one body in the frames that both have, as on both sides of a trunk.
+
+    These are the lesser part of either's frames. In most of them both together must be no larger than a body, and
+    show no more than one of them shows alone.
+    """
+    _, here, there = np.intersect1d(one.frame, other.frame, assume_unique=True, return_indices=True)
+    if not len(here):
+        return True
+    if len(here) > _OVERLAP * min(len(one.frame), len(other.frame)):
+        return False
+    extent = np.maximum(one.high[here], other.high[there]) - np.minimum(one.low[here], other.low[there])
+    limit = size_limits(widest_m=settings.widest_m, tallest_m=settings.tallest_m)
+    shown = float(np.median(one.area[here] + other.area[there]))
+    most = max(full_area(one), full_area(other))
+    return bool((extent <= limit).all(axis=1).mean() >= _OFTEN and shown <= _SHOWN_TWICE * most)
 
 
-def _price(one: SegmentFrames, other: SegmentFrames, settings: Settings, fps: float) -> float:
+def _price(pair: tuple[SegmentFrames, SegmentFrames], restlessness: float, fps: float) -> float:
     """The price of one path for both, by place and speed."""
+    one, other = pair
     both = SegmentFrames.together(one, other)
     area = full_area(both)
-    restlessness = settings.restlessness_of_links
     misses = [
         smoothest(evidence(rows, full_area=area, fps=fps), fps=fps, restlessness=restlessness)[1]
         for rows in (both, one, other)

@@ -10,11 +10,13 @@ from scipy.sparse.csgraph import connected_components
 from algorithm.companions import companions
 from algorithm.completion import completed
 from algorithm.continuation import candidates
+from algorithm.events import Clock, events_between, things
+from algorithm.flights import flights
 from algorithm.followed import Followed
 from algorithm.given import Linker, Segments
 from algorithm.grouping import groups
 from algorithm.linking import confidences, is_scrap, linked, standings
-from algorithm.path import path
+from algorithm.restlessness import restless_path
 from algorithm.result import Motion, Solution
 from algorithm.segment_frames import SegmentFrames, segment_frames
 from algorithm.settings import Settings
@@ -27,10 +29,14 @@ _WORTH_KEEPING = 0.02
 
 
 def common_fates(followed: Followed, settings: Settings) -> Segments:
-    """The segment of every trajectory (steps 5 and 6): what keeps together, and what goes together beside it."""
+    """The segment of every trajectory (steps 5 and 6): what keeps together, what goes beside it, and its scraps."""
     segment = groups(followed.trajectories, settings, fps=followed.fps)
+    if not len(segment):
+        return segment
     rows = _rows(followed, segment)
-    return companions(rows, settings, fps=followed.fps)[segment] if len(segment) else segment
+    body = companions(rows, settings, fps=followed.fps)
+    body = _renumbered(gathered(rows.renamed(body), settings, fps=followed.fps)[body])
+    return body[segment]
 
 
 def continued(followed: Followed, segments: Segments, settings: Settings, linker: Linker | None) -> Solution:
@@ -55,6 +61,9 @@ def continued(followed: Followed, segments: Segments, settings: Settings, linker
         motions=motions,
         links=links,
         alternatives=alternatives,
+        events=events_between(
+            things(followed.trajectories, of_trajectory), Clock(fps=followed.fps, frames=followed.frames)
+        ),
     )
 
 
@@ -75,7 +84,10 @@ def links_between(
         for before, after, sure, chosen in zip(found.before, found.after, confidence, found.chosen, strict=True)
     ]
     made = tuple(link for link in every if link.chosen)
-    return made, tuple(link for link in every if not link.chosen and link.confidence >= _WORTH_KEEPING)
+    flown = flights(rows, made, fps=followed.fps)
+    told = {(link.before, link.after) for link in flown}
+    others = [link for link in every if not link.chosen and link.confidence >= _WORTH_KEEPING]
+    return (*made, *flown), tuple(link for link in others if (link.before, link.after) not in told)
 
 
 def _rows(followed: Followed, segments: Segments) -> SegmentFrames:
@@ -90,7 +102,7 @@ def _motion(
     rows: SegmentFrames,
     settings: Settings,
 ) -> Motion:
-    curve = path(rows, fps=followed.fps, restlessness=settings.restlessness)
+    curve = restless_path(rows, fps=followed.fps, calmest=settings.restlessness)
     own = segments[members]
     completion = completed(
         followed.trajectories.chosen(members),

@@ -31,6 +31,8 @@ _FEWEST = 60
 _CORRECTIONS = 2
 """How often the representative is corrected by what the points' orbits leave over."""
 _CORRECTED_OVER_SECONDS = 0.12
+_CHUNK = 200_000
+"""Places at a time: bounds the memory."""
 _DOUBT = 20.0
 """A frame's correction is halved where only so many examples speak for it."""
 
@@ -51,8 +53,12 @@ class Gait:
         self, trajectory: Int[np.ndarray, "place"], frame: Int[np.ndarray, "place"]
     ) -> Float[np.ndarray, "place 3"]:
         """How far the trajectories' points are from their mean places, body axes, metres."""
-        basis = harmonics(frame, period_frames=self.period_frames)[:, 1:]
-        return np.einsum("ph,phx->px", basis, self.orbits[trajectory, 1:])
+        swing = np.empty((len(frame), 3))
+        for begin in range(0, len(frame), _CHUNK):
+            rows = slice(begin, begin + _CHUNK)
+            basis = harmonics(frame[rows], period_frames=self.period_frames)[:, 1:]
+            swing[rows] = np.einsum("ph,phx->px", basis, self.orbits[trajectory[rows], 1:])
+        return swing
 
     def calmed(self, trajectories: Trajectories) -> Trajectories:
         """The trajectories in body axes about the carrier, without their swing: a rigid body that stands still."""
@@ -69,8 +75,12 @@ class Gait:
         self, place: Float[np.ndarray, "place 3"], frame: Int[np.ndarray, "place"]
     ) -> Float[np.ndarray, "place 3"]:
         """Places in body axes, swing included, in world axes; metres."""
-        moment = frame - self.carrier.first
-        return self.carrier.position[moment] + np.einsum("pij,pj->pi", self.axes[moment], place)
+        world = np.empty_like(place)
+        for begin in range(0, len(place), _CHUNK):
+            rows = slice(begin, begin + _CHUNK)
+            moment = frame[rows] - self.carrier.first
+            world[rows] = self.carrier.position[moment] + np.einsum("pij,pj->pi", self.axes[moment], place[rows])
+        return world
 
 
 def found_gait(trajectories: Trajectories, curve: Curve, *, fps: float, spacing_m: float) -> Gait | None:
@@ -105,8 +115,13 @@ def found_gait(trajectories: Trajectories, curve: Curve, *, fps: float, spacing_
 
 def _in_body(trajectories: Trajectories, curve: Curve, axes: np.ndarray) -> Float[np.ndarray, "observation 3"]:
     """The trajectories' places about the curve in body axes, metres."""
-    moment = trajectories.frame - curve.first
-    return np.einsum("pji,pj->pi", axes[moment], trajectories.position - curve.position[moment])
+    place = np.empty_like(trajectories.position)
+    for begin in range(0, len(place), _CHUNK):
+        rows = slice(begin, begin + _CHUNK)
+        moment = trajectories.frame[rows] - curve.first
+        away = trajectories.position[rows] - curve.position[moment]
+        place[rows] = np.einsum("pji,pj->pi", axes[moment], away)
+    return place
 
 
 def _examples(trajectories: Trajectories) -> Int[np.ndarray, "example"]:

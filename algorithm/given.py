@@ -23,7 +23,7 @@ class Given:
     flow: FlowBetween | None = None
     """Instead of optical flow (step 1)."""
     segments: Segmenter | None = None
-    """Instead of affinity, clustering and the care for fragments (steps 5 and 6)."""
+    """Instead of affinity and clustering (steps 5 and 6)."""
     links: Linker | None = None
     """Instead of the assignment of segments (step 9); the polynomials between them stay the algorithm's."""
 

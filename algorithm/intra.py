@@ -7,6 +7,7 @@ from jaxtyping import Float, Int
 from scipy.spatial import cKDTree
 
 from algorithm.assignment import cheapest_assignment
+from algorithm.compiled import compiled
 from algorithm.representative import Curve
 from algorithm.settings import AlignmentName
 from algorithm.trajectories import Trajectories
@@ -107,16 +108,19 @@ def _candidates(
 ) -> tuple[Int[np.ndarray, "pair"], Int[np.ndarray, "pair"]]:
     """For each trajectory the earlier ones whose extension passes near its beginning."""
     first, last = trajectories.first_frame, trajectories.last_frame
+    start = trajectories.position[trajectories.first_row]
+    by_first, by_last = np.argsort(first, kind="stable"), np.argsort(last, kind="stable")
+    firsts, lasts = first[by_first], last[by_last]
     before, after = [np.zeros(0, int)], [np.zeros(0, int)]
-    for frame in np.unique(first):
-        ended = np.flatnonzero((last < frame) & (last >= frame - longest_frames))
-        begun = np.flatnonzero(first == frame)
+    for begun in np.split(by_first, np.flatnonzero(np.diff(firsts)) + 1):
+        frame = first[begun[0]] if len(begun) else 0
+        since, until = np.searchsorted(lasts, [frame - longest_frames, frame])
+        ended = by_last[since:until]
         if not len(ended):
             continue
         place = np.broadcast_to(curve.position[frame - curve.first], (len(ended), 3))
         tree = cKDTree(alignment.extended(ended, place))
-        start = trajectories.position[trajectories.first_row[begun]]
-        distance, near = tree.query(start, k=min(_CANDIDATES, len(ended)), distance_upper_bound=2 * gate_m)
+        distance, near = tree.query(start[begun], k=min(_CANDIDATES, len(ended)), distance_upper_bound=2 * gate_m)
         distance, near = distance.reshape(len(begun), -1), near.reshape(len(begun), -1)
         row, column = np.nonzero(np.isfinite(distance))
         before.append(ended[near[row, column]])
@@ -128,12 +132,33 @@ def _extension_costs(
     trajectories: Trajectories, curve: Curve, alignment: Alignment, pairs: tuple[np.ndarray, np.ndarray]
 ) -> Float[np.ndarray, "pair"]:
     """The mean distance of each second trajectory from the extension of the first, metres."""
-    before, after = pairs
-    if not len(before):
-        return np.zeros(0)
-    length = trajectories.length[after]
-    start = np.cumsum(length) - length
-    row = np.repeat(trajectories.first_row[after] - start, length) + np.arange(length.sum())
-    extension = alignment.extended(np.repeat(before, length), _at(curve, trajectories.frame[row]))
-    distance = np.linalg.norm(extension - trajectories.position[row], axis=1)
-    return np.add.reduceat(distance, start) / length
+    moment = trajectories.frame - curve.first
+    rows = trajectories.first_row, trajectories.length
+    laid = np.ascontiguousarray(alignment.rotation), alignment.shift, curve.position
+    return np.asarray(_mean_distances(pairs, rows, trajectories.position, moment, laid))
+
+
+@compiled
+def _mean_distances(
+    pairs: tuple[np.ndarray, np.ndarray],
+    rows: tuple[np.ndarray, np.ndarray],
+    position: np.ndarray,
+    moment: np.ndarray,
+    laid: tuple[np.ndarray, np.ndarray, np.ndarray],
+) -> np.ndarray:  # pragma: no cover
+    """The mean distance of each pair's second from rotation curve + shift of its first, metres."""
+    rotation, shift, curve = laid
+    mean = np.zeros(len(pairs[0]))
+    for pair in range(len(mean)):
+        before, after = pairs[0][pair], pairs[1][pair]
+        begin, length = rows[0][after], rows[1][after]
+        for row in range(begin, begin + length):
+            square = 0.0
+            for axis in range(3):
+                apart = shift[before, axis] - position[row, axis]
+                for other in range(3):
+                    apart += rotation[before, axis, other] * curve[moment[row], other]
+                square += apart**2
+            mean[pair] += np.sqrt(square)
+        mean[pair] /= length
+    return mean

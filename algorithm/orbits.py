@@ -55,9 +55,9 @@ class Prior:
     """Standard deviation of places from their orbits, metres along each axis."""
 
 
-def harmonics(frame: Float[np.ndarray, "moment"], *, period_frames: float) -> Float[np.ndarray, "moment harmonic"]:
+def harmonics(frame: Int[np.ndarray, "moment"], *, period_frames: float) -> Float[np.ndarray, "moment harmonic"]:
     """1, cos, sin, cos 2, sin 2 ... of the phase at the frames."""
-    phase = 2 * np.pi / period_frames * np.asarray(frame, float)
+    phase = 2 * np.pi / period_frames * frame
     waves = [wave(number * phase) for number in range(1, HARMONICS + 1) for wave in (np.cos, np.sin)]
     return np.stack([np.ones(len(phase)), *waves], axis=1)
 
@@ -70,17 +70,22 @@ def moments_of(
     period_frames: float,
 ) -> Moments:
     """The sums over each trajectory; it begins at its first row and ends before the next one's."""
-    basis = harmonics(frame, period_frames=period_frames)
-    width = basis.shape[1]
-    gram = np.zeros((len(first_row), width, width))
-    for one in range(width):
-        for other in range(one, width):
-            gram[:, one, other] = gram[:, other, one] = np.add.reduceat(basis[:, one] * basis[:, other], first_row)
-    cross = np.stack([np.add.reduceat(basis * place[:, [axis]], first_row, axis=0) for axis in range(3)], axis=2)
-    square = np.add.reduceat((place**2).sum(axis=1), first_row)
-    return Moments(
-        gram=gram, cross=cross, square=square, length=np.diff(np.append(first_row, len(place))).astype(float)
-    )
+    length = np.diff(np.append(first_row, len(place)))
+    width = 1 + 2 * HARMONICS
+    gram, cross = np.zeros((len(first_row), width, width)), np.zeros((len(first_row), width, 3))
+    for begin in range(0, len(first_row), _CHUNK):
+        some = slice(begin, begin + _CHUNK)
+        start = first_row[some]
+        rows = slice(int(start[0]), int(start[-1] + length[some][-1]))
+        basis = harmonics(frame[rows], period_frames=period_frames)
+        for one in range(width):
+            for other in range(one, width):
+                total = np.add.reduceat(basis[:, one] * basis[:, other], start - start[0])
+                gram[some, one, other] = gram[some, other, one] = total
+        for axis in range(3):
+            cross[some, :, axis] = np.add.reduceat(basis * place[rows, axis, None], start - start[0], axis=0)
+    square = np.add.reduceat(np.einsum("px,px->p", place, place), first_row)
+    return Moments(gram=gram, cross=cross, square=square, length=length.astype(float))
 
 
 def fitted_prior(known: Moments, *, least_noise_m: float) -> Prior:
@@ -112,7 +117,12 @@ def orbits_by_prior(known: Moments, prior: Prior) -> Orbits:
 
 
 def orbits_by_examples(
-    known: Moments, examples: Orbits, weight: Float[np.ndarray, "example"], prior: Prior, *, themselves: bool = False
+    known: Moments,
+    examples: Float[np.ndarray, "example harmonic 3"],
+    weight: Float[np.ndarray, "example"],
+    prior: Prior,
+    *,
+    themselves: bool = False,
 ) -> Orbits:
     """The likeliest orbit of each trajectory, given orbits of points that were seen for longer.
 
@@ -140,7 +150,9 @@ def orbits_by_examples(
     return np.concatenate([np.zeros((0, width, 3)), *parts])
 
 
-def _squared_misses(known: Moments, examples: Orbits) -> Float[np.ndarray, "trajectory example"]:
+def _squared_misses(
+    known: Moments, examples: Float[np.ndarray, "example harmonic 3"]
+) -> Float[np.ndarray, "trajectory example"]:
     """The mean squared distance of each trajectory's places from each example, in the same frames; square metres."""
     products = np.einsum("eix,ejx->eij", examples, examples).reshape(len(examples), -1)
     total = known.square[:, None] + known.gram.reshape(len(known.gram), -1) @ products.T

@@ -8,7 +8,9 @@ from jaxtyping import Float, Float32, Int
 
 from algorithm.compiled import compiled
 
-_MEMBERS_A_PAIR = 10
+_MEMBERS_A_PAIR = 4
+_STRAY, _SMALLEST_M = 1.2, 0.15
+"""Parts of a body stray about one another by this share of its extent, or of so small a body's."""
 _HORIZONTALS = 4
 _ANGLES = np.arange(_HORIZONTALS) * np.pi / _HORIZONTALS
 DIRECTIONS: Float[np.ndarray, "direction 3"] = np.concatenate(
@@ -43,14 +45,16 @@ def united(
     limit: np.ndarray,
     refuse_after: int,
 ) -> np.ndarray:
-    """The group of every trajectory when the pairs are united in turn (Kruskal), too large unions left out.
+    """The group of every trajectory when the pairs are united in turn (Kruskal), but for unions that are no body.
 
     `pairs` come in order of falling trust. A union is refused if in more than `refuse_after` common moments its
-    extent along some direction is above the `limit`, and put off until there is one pair more for every ten members
-    of the smaller group: two bodies are not one for a few bad matches. Groups are named by one of their members.
+    extent along some direction is above the `limit`; or if one part strays about the other farther than the larger
+    one's extent times 1.2, as balls do that meet in a hand. It is put off until there is one pair more for every four
+    members of the smaller group: two bodies are not one for a few bad matches. Groups are named by a member.
     """
     parent = np.arange(len(intervals.first))
     members = np.ones(len(parent), np.int64)
+    extent = np.zeros(len(parent))
     support = numba.typed.Dict.empty(numba.types.int64, numba.types.int64)
     begin, end = intervals.first.copy(), intervals.first + intervals.lasts
     room_begin, room_end, room = begin.copy(), end.copy(), intervals.row.copy()
@@ -58,41 +62,28 @@ def united(
     used = len(low)
     for number in range(len(pairs[0])):
         one, other = _root(parent, pairs[0][number]), _root(parent, pairs[1][number])
-        if one == other:
-            continue
-        if _put_off(support, members, one, other):
+        if one == other or _put_off(support, members, one, other):
             continue
         if end[one] - begin[one] < end[other] - begin[other]:
             one, other = other, one
         shared = max(begin[one], begin[other]), min(end[one], end[other])
-        at_one, at_other = room[one] - room_begin[one], room[other] - room_begin[other]
-        if _too_large(low, high, (at_one, at_other), shared, limit, refuse_after):
+        rows = room[one] - room_begin[one], room[other] - room_begin[other]
+        size = max(extent[one], extent[other])
+        if _too_large(low, high, rows, shared, limit, refuse_after) or _astray(low, high, rows, shared, size):
             continue
         parent[other] = one
         members[one] += members[other]
         first, last = min(begin[one], begin[other]), max(end[one], end[other])
         if first < room_begin[one] or last > room_end[one]:  # Moves to thrice the room, so that it seldom does.
             spare = last - first
-            low = _moved(low, used, 3 * spare, (at_one + begin[one], end[one] - begin[one], begin[one] - first + spare))
-            high = _moved(
-                high, used, 3 * spare, (at_one + begin[one], end[one] - begin[one], begin[one] - first + spare)
-            )
+            moved = rows[0] + begin[one], end[one] - begin[one], begin[one] - first + spare
+            low, high = _moved(low, used, 3 * spare, moved), _moved(high, used, 3 * spare, moved)
             room_begin[one], room_end[one], room[one] = first - spare, last + spare, used
             used += 3 * spare
-            at_one = room[one] - room_begin[one]
-        for moment in range(first, last):
-            was, comes = begin[one] <= moment < end[one], begin[other] <= moment < end[other]
-            to, source = at_one + moment, at_other + moment
-            for direction in range(len(limit)):
-                if comes:
-                    low[to, direction] = (
-                        min(low[to, direction], low[source, direction]) if was else low[source, direction]
-                    )
-                    high[to, direction] = (
-                        max(high[to, direction], high[source, direction]) if was else high[source, direction]
-                    )
-                elif not was:
-                    low[to, direction], high[to, direction] = np.inf, -np.inf
+            rows = room[one] - room_begin[one], rows[1]
+        _blank(low, high, rows[0], (first, begin[one]))
+        _blank(low, high, rows[0], (end[one], last))
+        extent[one] = max(size, _widened(low, high, rows, (begin[other], end[other])))
         begin[one], end[one] = first, last
     for member in range(len(parent)):
         parent[member] = _root(parent, member)
@@ -115,7 +106,7 @@ def _put_off(support: dict[int, int], members: np.ndarray, one: int, other: int)
 def _too_large(
     low: np.ndarray,
     high: np.ndarray,
-    at: tuple[int, int],
+    rows: tuple[int, int],
     shared: tuple[int, int],
     limit: np.ndarray,
     refuse_after: int,
@@ -123,7 +114,7 @@ def _too_large(
     """Whether the union of two groups is beyond the limit in more than so many of the shared moments."""
     beyond = 0
     for moment in range(shared[0], shared[1]):
-        one, other = at[0] + moment, at[1] + moment
+        one, other = rows[0] + moment, rows[1] + moment
         if low[one, 0] > high[one, 0] or low[other, 0] > high[other, 0]:
             continue  # One of them has no point in this moment.
         for direction in range(len(limit)):
@@ -134,6 +125,42 @@ def _too_large(
         if beyond > refuse_after:
             return True
     return False
+
+
+@compiled
+def _astray(low: np.ndarray, high: np.ndarray, rows: tuple[int, int], shared: tuple[int, int], size: float) -> bool:
+    """Whether the middle of one group strays about that of the other farther than a body of this size lets it."""
+    for direction in range(low.shape[1]):
+        least, most = np.inf, -np.inf
+        for moment in range(shared[0], shared[1]):
+            one, other = rows[0] + moment, rows[1] + moment
+            apart = low[one, direction] + high[one, direction] - low[other, direction] - high[other, direction]
+            if np.isfinite(apart):
+                least, most = min(least, apart / 2), max(most, apart / 2)
+        if most - least > _STRAY * max(size, _SMALLEST_M):
+            return True
+    return False
+
+
+@compiled
+def _blank(low: np.ndarray, high: np.ndarray, row: int, moments: tuple[int, int]) -> None:
+    """No point in these moments."""
+    for moment in range(moments[0], moments[1]):
+        low[row + moment] = np.inf
+        high[row + moment] = -np.inf
+
+
+@compiled
+def _widened(low: np.ndarray, high: np.ndarray, rows: tuple[int, int], moments: tuple[int, int]) -> float:
+    """The first group's outline widened by the second's in its moments; the largest extent there, metres."""
+    widest = 0.0
+    for moment in range(moments[0], moments[1]):
+        to, source = rows[0] + moment, rows[1] + moment
+        for direction in range(low.shape[1]):
+            low[to, direction] = min(low[to, direction], low[source, direction])
+            high[to, direction] = max(high[to, direction], high[source, direction])
+            widest = max(widest, high[to, direction] - low[to, direction])
+    return widest
 
 
 @compiled

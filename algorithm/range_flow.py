@@ -5,7 +5,7 @@ As an image, depth shows little of a body but its outline; as a surface it shows
 
 - range flow: the surface is met where it has gone, Z_b(p + (u, v)) = Z_a(p) + w
   [Spies, Jahne, Barron, CVIU 2002; Gottfried, Fehr, Garbe, ISVC 2011];
-- constancy of the image, normalised by its gradient [Zimmer, Bruhn, Weickert, IJCV 2011];
+- constancy of the image and of its slopes, normalised by gradients [Zimmer, Bruhn, Weickert, IJCV 2011];
 - smoothness of (u, v, w) over neighbours on the same surface.
 
 It is minimised by warping, reweighting and over-relaxation [Brox et al., ECCV 2004] from a fast optical flow. What

@@ -12,7 +12,7 @@ from algorithm.completion import Completion
 from algorithm.representative import Curve
 from algorithm.settings import Settings
 from algorithm.trajectories import Trajectories
-from recording.motions import NOISE, OBSERVED, Link, Making, Motions, Representative
+from recording.motions import NOISE, OBSERVED, Event, Link, Making, Motions, Representative
 from recording.recording import Recording
 from recording.version import VERSION
 
@@ -42,6 +42,8 @@ class Solution:
     links: tuple[Link, ...]
     alternatives: tuple[Link, ...] = ()
     """Links that might have been made instead."""
+    events: tuple[Event, ...] = ()
+    """Of motions that merge or split, which are numbered as in `motions`."""
 
 
 def motions_of(solution: Solution, recording: Recording, settings: Settings, seconds: Mapping[str, float]) -> Motions:
@@ -69,6 +71,7 @@ def motions_of(solution: Solution, recording: Recording, settings: Settings, sec
         representatives=tuple(_representative(number, found) for number, found in enumerate(solution.motions)),
         links=solution.links,
         alternatives=solution.alternatives,
+        events=solution.events,
         making=Making(
             settings=settings.model_dump(),
             recording_digest=recording.digest(),

@@ -90,8 +90,8 @@ class Settings(Frozen):
     """Metres: segments farther apart than this are no parts of one body."""
     companion_stray_m: Positive = 0.65
     """Metres: a part's centre strays sideways at most this far from its mean place beside the other part."""
-    companion_drift_m_per_s: Positive = 1.1
-    """Metres a second: parts of one body drift apart slower than this."""
+    companion_speed_m_per_s: Positive = 1.2
+    """Metres a second: parts of one body move about one another slower than this on average; a thrown ball does not."""
 
     completing: CompletingName = "continuation"
     """`continuation` = segments are linked over the whole recording first, then points are completed; `bottom_up` =

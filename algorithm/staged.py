@@ -23,10 +23,10 @@ def solve(
     given: Given = NOTHING_GIVEN,
     cache: Cache | None = None,
 ) -> Motions:
-    """The motions in a recording, completed where they were hidden.
+    """The motions in a recording, completed where they were hidden: those of `algorithm.pipeline.solve`, row for row.
 
     Of the recording nothing but depths, camera and frame rate is read. What is `given` takes a stage's place. A stage
-    whose result the cache holds is not made again.
+    whose result the cache holds is not made again; seconds are those that its making took.
     """
     digest = recording.digest()
     return Course(

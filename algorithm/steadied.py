@@ -7,20 +7,20 @@ from numpy.polynomial import chebyshev
 from algorithm.faint import faint_stretches
 from algorithm.representative import Curve
 
-_FAINT, _CLEAR = 0.3, 0.6
+_FAINT, _CLEAR = 0.2, 0.4
 """Shares of the usual number of points: below the one a path is drawn anew, by moments above the other."""
-_ENDS_SECONDS = 0.7
+_ENDS_SECONDS = 0.5
 """How much of the path on either side tells how it goes on."""
-_DEGREE = 3
+_DEGREE = 2
 _FEWEST = 4
 """Clear moments that either side needs."""
 
 
 def steadied(curve: Curve, *, fps: float) -> Curve:
-    """The curve with a cubic through every stretch in which little was seen of the motion.
+    """The curve with a parabola through every stretch in which little was seen of the motion.
 
-    The cubic fits the clear moments of 0.7 s on either side; what it misses at the two nearest ones is added in
-    proportion, so that the path has no jump. A stretch without enough of them on both sides stays as it is.
+    The parabola fits the clear moments of half a second on either side; what it misses at the two nearest ones is
+    added in proportion, so that the path has no jump. A stretch without enough of them on both sides stays as it is.
     """
     clear = np.ones(len(curve.position), bool)
     for first, last in faint_stretches(curve, share=_CLEAR, fps=fps):

@@ -10,8 +10,9 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from algorithm.outlines import reaches
-from algorithm.path import path
+from algorithm.path import full_area
 from algorithm.representative import Curve
+from algorithm.restlessness import restless_path
 from algorithm.segment_frames import SegmentFrames
 from algorithm.settings import Settings
 
@@ -19,8 +20,8 @@ _SLACK = 0.3
 """A straggler may stand out by this share of the outline's width."""
 _OFTEN = 0.7
 """In so large a share of its frames a straggler must lie in the outline."""
-_LESS = 0.5
-"""A straggler shows at most this share of what its host shows."""
+_LITTLE = 0.3
+"""A straggler shows at most this share of what its host shows when all of it is seen."""
 _USUAL = 10, 90
 """Percentiles of a body's reach from its path that make its outline."""
 _AHEAD_SECONDS = 0.3
@@ -35,6 +36,8 @@ class Host:
     low: Float[np.ndarray, "direction"]
     """The outline's reach from the path, metres."""
     high: Float[np.ndarray, "direction"]
+    area: float
+    """What it shows of itself when nothing hides it."""
     shown: float
     """Its area in all frames."""
 
@@ -42,16 +45,17 @@ class Host:
 def gathered(rows: SegmentFrames, settings: Settings, *, fps: float) -> Int[np.ndarray, "motion"]:
     """The motion that each motion belongs to, itself if it is none's straggler; names are not made anew.
 
-    The rows are those of motions. Motion m is a straggler of h if it shows half as much at most and in 70 % of its
-    frames lies in h's outline, carried along h's path; of several the one whose path it keeps nearest to.
+    The rows are those of motions. Motion m is a straggler of h if it shows little beside h, in 70 % of its frames lies
+    in h's outline, carried along h's path, and moves with it as companions do; of several the one whose path it keeps
+    nearest to.
     """
     ones = rows.singles()
     hosts = [_host(one, settings, fps) for one in ones]
     order = sorted(range(len(ones)), key=lambda number: hosts[number].shown)
     into = np.arange(len(ones))
     for place, number in enumerate(order):
-        larger = [other for other in order[place + 1 :] if hosts[number].shown <= _LESS * hosts[other].shown]
-        distances = {other: _distance(ones[number], hosts[other], fps) for other in larger}
+        larger = [other for other in order[place + 1 :] if hosts[number].area <= _LITTLE * hosts[other].area]
+        distances = {other: _distance(ones[number], hosts[other], settings, fps) for other in larger}
         nearest = min(distances, key=lambda other: distances[other], default=number)
         if distances.get(nearest, np.inf) < np.inf:
             into[number] = nearest
@@ -61,15 +65,15 @@ def gathered(rows: SegmentFrames, settings: Settings, *, fps: float) -> Int[np.n
 
 
 def _host(one: SegmentFrames, settings: Settings, fps: float) -> Host:
-    curve = path(one, fps=fps, restlessness=settings.restlessness)
+    curve = restless_path(one, fps=fps, calmest=settings.restlessness)
     along = reaches(curve.position[one.frame - curve.first])
     low = np.percentile(one.low - along, _USUAL[0], axis=0)
     high = np.percentile(one.high - along, _USUAL[1], axis=0)
-    return Host(curve=curve, low=low, high=high, shown=float(one.area.sum()))
+    return Host(curve=curve, low=low, high=high, area=full_area(one), shown=float(one.area.sum()))
 
 
-def _distance(one: SegmentFrames, host: Host, fps: float) -> float:
-    """The mean distance of a motion's centre from the host's path, metres; infinite where it lies outside."""
+def _distance(one: SegmentFrames, host: Host, settings: Settings, fps: float) -> float:
+    """The mean distance of a motion's centre from the host's path, metres; infinite for no straggler of it."""
     curve = host.curve
     reach = round(_AHEAD_SECONDS * fps)
     common = (one.frame >= curve.first - reach) & (one.frame <= curve.last + reach)
@@ -80,6 +84,10 @@ def _distance(one: SegmentFrames, host: Host, fps: float) -> float:
     slack = _SLACK * (host.high - host.low)
     inside = (one.low[common] - along >= host.low - slack) & (one.high[common] - along <= host.high + slack)
     if inside.all(axis=1).sum() < _OFTEN * len(one.frame):
+        return np.inf
+    onward = _places(curve, one.frame[common] + 1) - place
+    missed = np.sum((one.step[common] - onward)[one.followed[common] > 0] ** 2, axis=1)
+    if len(missed) and fps * np.sqrt(missed.mean()) > settings.companion_speed_m_per_s:
         return np.inf
     return float(np.linalg.norm(one.centre[common] - place, axis=1).mean())
 

@@ -4,6 +4,8 @@ A task is a function with its arguments under a key; a result under the same key
 """
 
 import logging
+import signal
+import threading
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -22,6 +24,8 @@ _ONE_THREAD = {"NUMBA_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "OPENCV_FOR_THR
 """A worker is a process with one thread: workers, not their libraries, share the cores."""
 _PATIENCE_SECONDS = 10.0
 """A scheduler that has not answered by then is not there."""
+_DEAF = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
+"""For workers that are begun later: a key that interrupts the program reaches them too, and they need not say so."""
 _KILLED = "KilledWorker: every worker that had it died: is there memory for it?"
 
 
@@ -47,14 +51,17 @@ def cluster(scheduler: str | None = None, *, workers: int = 1) -> Iterator[Clien
         with _connected(scheduler) as client:
             yield client
         return
-    with (
-        dask.config.set({"distributed.nanny.pre-spawn-environ": _ONE_THREAD}),
-        LocalCluster(
-            n_workers=workers, threads_per_worker=1, dashboard_address="127.0.0.1:0", silence_logs=logging.CRITICAL
-        ) as own,
-        Client(own) as client,
-    ):
-        yield client
+    with dask.config.set({"distributed.nanny.pre-spawn-environ": _ONE_THREAD}):
+        with _deaf():
+            own = LocalCluster(
+                n_workers=workers,
+                threads_per_worker=1,
+                dashboard_address="127.0.0.1:0",
+                silence_logs=logging.CRITICAL,
+                preload=[_DEAF],
+            )
+        with own, Client(own) as client:
+            yield client
 
 
 def finished(
@@ -86,9 +93,9 @@ def _tried(client: Client, tasks: Mapping[str, Task], wanted: Sequence[str], at_
             pool.update(_futures(client, tasks, list(islice(waiting, len(batch)))))
             for future, values in _fetched(client, batch):
                 if values:
-                    yield Finished(key=future.key, value=values[0])
+                    yield Finished(key=str(future.key), value=values[0])
                 elif future.status == "error":
-                    yield Finished(key=future.key, failure=_sentence(future.exception()))
+                    yield Finished(key=str(future.key), failure=_sentence(future.exception()))
                 else:
                     pool.add(future)  # Its worker died before the result was fetched: it is being made again.
     finally:
@@ -119,6 +126,19 @@ def require_code(expected: str, *modules: str) -> None:
     """Raise where this process has other code than the one that gave it the task."""
     if code_digest(*modules) != expected:
         raise InputError("this worker has other code than the client, or other libraries: install the same version")
+
+
+@contextmanager
+def _deaf() -> Iterator[None]:
+    """Within this block a key that interrupts is not heard, nor ever by the processes that are begun in it."""
+    if threading.current_thread() is not threading.main_thread():  # Only that one hears signals, and may say so.
+        yield
+        return
+    heard = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, heard)
 
 
 @contextmanager

@@ -4,6 +4,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
+
+settings.register_profile("unhurried", deadline=None)  # A busy machine is slow, which says nothing of the code.
+settings.load_profile("unhurried")
 
 
 @pytest.fixture(autouse=True, scope="session")

@@ -105,7 +105,7 @@ def _visibility(trial: Trial) -> Visibility:
 def _scores(trial: Trial, grouped: Grouped | None, visibility: Visibility | None) -> Scores:
     course = trial.course()
     key = trial.scores_key()
-    return kept(trial.cache, key, lambda: scores(course.recording, course.motions(grouped), visibility), _SCORES)
+    return kept(trial.cache, key, lambda: scores(course.recording, course.motions(grouped), visibility), SCORES)
 
 
 def _write(found: Scores, path: Path) -> None:
@@ -116,7 +116,7 @@ def _read(path: Path) -> Scores:
     return dict(json.loads(path.read_text(encoding="utf-8")))
 
 
-_SCORES: Form[Scores] = Form(read=_read, write=_write)
+SCORES: Form[Scores] = Form(read=_read, write=_write)
 
 
 @lru_cache(maxsize=_AT_HAND)

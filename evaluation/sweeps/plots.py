@@ -20,6 +20,8 @@ from evaluation.sweeps.table import Row
 _IN_A_ROW = 3
 _PANEL = (4.4, 3.3)
 """Width and height, inches."""
+_MOST_NUMBERS = 36
+"""A heat map of more cells bears no numbers."""
 
 
 def draw_curves(sweep: Sweep, rows: Sequence[Row], path: Path) -> None:
@@ -73,11 +75,13 @@ def _draw_curve(panel: Axes, sweep: Sweep, rows: Sequence[Row], axis: str) -> No
     for number, scene in enumerate(scenes if len(scenes) > 1 else ()):
         means = [_mean([row for row in level.rows if row["scene"] == scene], sweep.goal) for level in levels]
         colour = COLOURS[number % len(COLOURS)]
-        panel.plot(places, means, color=colour, linewidth=0.9, marker=".", markersize=4, alpha=0.8, label=scene)
+        line = "-" if _numeric(levels) else "none"
+        panel.plot(places, means, color=colour, linestyle=line, linewidth=0.9, marker=".", alpha=0.8, label=scene)
     intervals = [interval_of(level.rows, sweep.goal) for level in levels]
     means = [np.nan if one is None else one.mean for one in intervals]
     widths = [0.0 if one is None else one.half_width or 0.0 for one in intervals]
-    panel.errorbar(places, means, yerr=widths, color="black", linewidth=1.6, marker="o", capsize=3, label="mean")
+    line = "-" if _numeric(levels) else "none"
+    panel.errorbar(places, means, yerr=widths, color="black", linestyle=line, marker="o", capsize=3, label="mean")
     _mark_paper(panel, levels, paper_values(sweep, axis, list(scenes)))
     _name_places(panel, sweep, levels, axis)
     panel.set(xlabel=axis, ylabel=sweep.goal)
@@ -95,10 +99,20 @@ def _draw_pair(panel: Axes, sweep: Sweep, rows: Sequence[Row], pair: tuple[str, 
     scenes = list(by(rows, "scene"))
     for x in _nearest(across, paper_values(sweep, pair[0], scenes)):
         for y in _nearest(up, paper_values(sweep, pair[1], scenes)):
-            panel.plot(x, y, marker="s", markersize=14, fillstyle="none", color="white", markeredgewidth=2)
+            panel.plot(x, y, marker="s", markersize=26, fillstyle="none", color=COLOURS[1], markeredgewidth=2)
+    if mean.size <= _MOST_NUMBERS:
+        _write_numbers(panel, mean)
     panel.set_xticks(range(len(across)), [_name(level.value) for level in across])
     panel.set_yticks(range(len(up)), [_name(level.value) for level in up])
     panel.set(xlabel=pair[0], ylabel=pair[1])
+
+
+def _write_numbers(panel: Axes, mean: np.ndarray) -> None:
+    """The number of each cell, dark on bright and bright on dark."""
+    middle = (np.nanmin(mean) + np.nanmax(mean)) / 2
+    for (row, column), value in np.ndenumerate(mean):
+        colour = "black" if value > middle else "white"
+        panel.text(column, row, f"{value:.3f}", ha="center", va="center", color=colour, fontsize=7)
 
 
 def _mean(rows: Sequence[Row], score: str) -> float:

@@ -6,7 +6,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from worlds import depths_of, plane, small_camera, sphere
 
-from algorithm.depth_image import continued_behind, depth_range, grey_image, shading_image, smoothed_depth
+from algorithm.depth_image import (
+    continued_behind,
+    depth_range,
+    grey_image,
+    nearness_image,
+    shading_image,
+    smoothed_depth,
+)
 
 NAN = np.float32(np.nan)
 
@@ -33,6 +40,11 @@ def test_grey_is_never_empty_where_there_is_depth_and_grows_with_it(values: list
     assert grey.dtype == np.uint8
     assert grey.min() >= 1
     assert (np.diff(grey.astype(int)) >= 0).all()
+
+
+def test_what_is_near_is_bright_and_the_farthest_stands_out_from_emptiness() -> None:
+    image = nearness_image(np.array([[2.0, 3.0, 4.0, NAN]], np.float32), within=(2.0, 4.0))
+    np.testing.assert_array_equal(image, [[255, 166, 76, 0]])
 
 
 def test_the_range_of_nothing_is_harmless() -> None:

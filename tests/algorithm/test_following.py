@@ -140,3 +140,16 @@ def test_every_picture_position_is_in_a_pixel_of_its_surface() -> None:
     column, row = np.floor(found.column_row).astype(int).T
     seen = np.stack(depths)[found.frame, row, column]
     np.testing.assert_allclose(seen, found.position[:, 2], atol=0.1)
+
+
+def test_points_of_a_noisy_surface_are_not_lost_for_its_noise() -> None:
+    """It moves by a pixel a frame; steps jump by three times the bound that holds without noise."""
+    generator = np.random.default_rng(0)
+    depths = [
+        np.where(np.isfinite(depth), depth + generator.normal(0, 0.02, depth.shape), np.nan) for depth in patch(5, 8, 1)
+    ]
+    noisy = [depth.astype(np.float32) for depth in depths]
+    narrow = Tolerances(surface_m=0.1, home_m=0.05, jolt_m=0.02)
+    found = follow(noisy, there_and_back(noisy, 1.0), narrow)
+    assert np.median(found.length) == 8
+    assert narrow.under_noise(0.0) == narrow

@@ -5,10 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from made import line, random_rotation, trajectories_of
-from scipy.optimize import linear_sum_assignment
 from scipy.spatial.transform import Rotation
 
-from algorithm import intra
 from algorithm.intra import aligned, bridged, joined
 from algorithm.representative import Curve
 from algorithm.trajectories import Trajectories
@@ -147,17 +145,3 @@ def test_a_join_without_a_gap_adds_no_place() -> None:
     alignment = aligned(made, curve_of(path), method="translation")
     joins = joined(made, curve_of(path), alignment, gate_m=0.1, longest_frames=9.0)
     assert len(bridged(made, curve_of(path), alignment, joins)[1]) == 0
-
-
-@given(seeds, st.integers(1, 7), st.integers(1, 7))
-def test_the_assignment_costs_as_little_as_scipys_dense_one(seed: int, rows: int, columns: int) -> None:
-    cost = np.random.default_rng(seed).uniform(0, 1.5, (rows, columns))
-    gate = 1.0
-    before, after = np.nonzero(cost <= gate)
-    found = intra._assigned(before, after, cost[before, after], gate)
-    assert len(np.unique(found[0])) == len(found[0])
-    assert len(np.unique(found[1])) == len(found[1])
-    np.testing.assert_allclose(cost[found[0], found[1]], found[2])
-    dense = np.concatenate([np.where(cost <= gate, cost, 1e6), np.full((rows, rows), gate)], axis=1)
-    best = dense[linear_sum_assignment(dense)].sum()
-    assert found[2].sum() + gate * (rows - len(found[0])) == pytest.approx(best)

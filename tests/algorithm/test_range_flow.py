@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from worlds import Surface, box, depths_of, plane, small_camera, sphere
 
 from algorithm.depth_image import nearness_image, smoothed_depth
+from algorithm.range_energy import _relax
 from algorithm.range_flow import View, agreed, range_flow
 from algorithm.sampling import on_surface
 from recording.camera import pixel_grid
@@ -121,6 +122,43 @@ def test_an_object_of_one_pixel_has_a_finite_flow() -> None:
     flow = range_flow(view_of(one), view_of(other))
     assert np.isfinite(flow.depth[30, 40])
     assert np.isfinite(flow.column_row).all()
+
+
+def test_the_aspects_of_a_ramp_are_its_brightness_and_its_slopes() -> None:
+    row, column = np.mgrid[:20, :30]
+    view = View(surface=np.full((20, 30), 2.0, np.float32), image=(2 * column + 3 * row + 60).astype(np.uint8))
+    inside = 255 * view.aspects[6:-6, 6:-6]
+    np.testing.assert_allclose(inside[..., 0], (2 * column + 3 * row + 60)[6:-6, 6:-6], atol=1e-6)
+    np.testing.assert_allclose(
+        inside[..., 1:], np.broadcast_to([2, 3, 2, 0, 0, 3, 0, 0], inside[..., 1:].shape), atol=1e-6
+    )
+
+
+def test_relaxation_solves_what_a_dense_solver_solves() -> None:
+    """Some pixels of a row are at rest: they hold their neighbours and stay as they are."""
+    generator = np.random.default_rng(5)
+    count, active = 12, np.array([1, 2, 3, 5, 6, 7, 8, 10])
+    half = generator.normal(size=(count, 3, 3))
+    data, right = half @ half.transpose(0, 2, 1), generator.normal(size=(count, 3))
+    start = generator.normal(size=(count, 3))
+    chain, axes = np.arange(count), np.arange(3)
+    neighbours = np.stack([np.minimum(chain + 1, count - 1), np.maximum(chain - 1, 0), chain, chain], axis=1)
+    hold = np.where(neighbours != chain[:, None], generator.uniform(0.1, 2.0), 0.0)
+    matrix = data[:, [0, 0, 1, 0, 1, 2], [0, 1, 1, 2, 2, 2]]
+    flow = start.copy()
+    for _ in range(60):
+        _relax(matrix[active], right[active], neighbours, hold[active], active, flow)
+    whole, side = np.zeros((count, 3, count, 3)), right.copy()
+    for k in range(count):
+        whole[k, :, k, :] += data[k] + hold[k].sum() * np.eye(3)
+        for q, other in zip(hold[k], neighbours[k], strict=True):
+            whole[k, :, other, :] -= q * np.eye(3)
+    rest = np.setdiff1d(chain, active)
+    side[active] -= np.einsum("aibj,bj->ai", whole[np.ix_(active, axes, rest, axes)], start[rest])
+    part = whole[np.ix_(active, axes, active, axes)].reshape(3 * len(active), -1)
+    expected = start.copy()
+    expected[active] = np.linalg.solve(part, side[active].ravel()).reshape(-1, 3)
+    np.testing.assert_allclose(flow, expected, atol=1e-4)
 
 
 @settings(max_examples=60, deadline=None)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from worlds import recorded, sphere
 
-from algorithm import staged
+from algorithm import pipeline, staged
 from algorithm.given import Given
 from algorithm.settings import Settings, preset_settings
 from algorithm.staged import Course, solve
@@ -101,10 +101,12 @@ def test_another_recording_has_other_keys() -> None:
 
 
 @pytest.mark.parametrize("preset", ["default", "paper"])
-def test_a_result_from_the_cache_is_the_same(preset: str, recording: Recording, tmp_path: Path) -> None:
+def test_in_stages_or_at_once_and_from_the_cache_the_result_is_the_same(
+    preset: str, recording: Recording, tmp_path: Path
+) -> None:
     """Also: in both presets no stage reads a setting of a later one."""
     settings, cache = preset_settings(preset), Cache(folder=tmp_path)
-    plain = solve(recording, settings)
+    plain = pipeline.solve(recording, settings)
     assert len(plain) > 100
     for _ in range(2):
         assert_same(solve(recording, settings, cache=cache), plain)
