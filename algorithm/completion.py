@@ -15,6 +15,10 @@ from algorithm.trajectories import Trajectories
 from recording.motions import INTER, INTRA
 
 
+_CHUNK = 200_000
+"""Places at a time: bounds the memory."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Completion:
     """Places that no one saw, of the trajectories of one motion."""
@@ -149,12 +153,12 @@ def _carried(
 def _stacked(parts: list[_Places]) -> _Places:
     """All places, one part after the other."""
     return _Places(
-        before=np.concatenate([part.before for part in parts]),
-        after=np.concatenate([part.after for part in parts]),
-        share=np.concatenate([part.share for part in parts]),
-        frame=np.concatenate([part.frame for part in parts]),
+        before=np.concatenate([part.before for part in parts], dtype=np.int32),
+        after=np.concatenate([part.after for part in parts], dtype=np.int32),
+        share=np.concatenate([part.share for part in parts], dtype=np.float32),
+        frame=np.concatenate([part.frame for part in parts], dtype=np.int32),
         position=np.concatenate([part.position for part in parts]),
-        cost=np.concatenate([part.cost for part in parts]),
+        cost=np.concatenate([part.cost for part in parts], dtype=np.float32),
     )
 
 
@@ -166,18 +170,30 @@ def _completion(
 ) -> Completion:
     """The places in world axes, swing included, and how sure they are."""
     joins, gait, curve, fps = made
-    before, after, frame = places.before, places.after, places.frame
-    position = places.position
-    if gait is not None:
-        share = places.share[:, None]
-        swing = (1 - share) * gait.swing(before, frame) + share * gait.swing(after, frame)
-        position = gait.restored(position + swing, frame)
-    crossed = (segment[before] != segment[after]) | (np.isnan(places.cost) & ~curve.observed[frame - curve.first])
+    count = len(places.frame)
+    position, confidence = np.empty((count, 3), np.float32), np.empty(count, np.float32)
+    source = np.empty(count, np.uint8)
+    for begin in range(0, count, _CHUNK):
+        part = slice(begin, begin + _CHUNK)
+        before, after, frame, cost = places.before[part], places.after[part], places.frame[part], places.cost[part]
+        position[part] = _swinging(places, part, gait)
+        alone = np.isnan(cost) & ~curve.observed[frame - curve.first]
+        source[part] = np.where((segment[before] != segment[after]) | alone, INTER, INTRA)
+        confidence[part] = sureness(trajectories, (before, after), frame, cost=cost, has_gait=gait is not None, fps=fps)
     return Completion(
-        trajectory=before,
-        frame=frame,
+        trajectory=places.before,
+        frame=places.frame,
         position=position,
-        source=np.where(crossed, INTER, INTRA),
-        confidence=sureness(trajectories, (before, after), frame, cost=places.cost, has_gait=gait is not None, fps=fps),
+        source=source,
+        confidence=confidence,
         joins=(joins[0], joins[1]),
     )
+
+
+def _swinging(places: _Places, part: slice, gait: Gait | None) -> Float[np.ndarray, "place 3"]:
+    """Some of the places in world axes, swing included."""
+    if gait is None:
+        return places.position[part]
+    frame, share = places.frame[part], places.share[part, None]
+    swing = (1 - share) * gait.swing(places.before[part], frame) + share * gait.swing(places.after[part], frame)
+    return gait.restored(places.position[part] + swing, frame)

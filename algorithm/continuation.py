@@ -23,6 +23,8 @@ _ROOM_M, _SPEEDS_M_PER_S = 2.0, 1.0
 """How far apart the places, and the speeds, of people are who have nothing to do with one another."""
 _TURNS = 2.5
 """What is hidden may be so much more restless than what is seen: a ball in a hand."""
+_STILL, _ALIKE, _UNLIKE_PRICE = 0.05, 5.0, 2.0
+"""Restlessness of one body is alike within this factor, and what is below counts as such; beyond it has a price."""
 _TAIL = 4.0
 """Degrees of freedom of Student's t: so surprising is a turn or a stop."""
 _HIDDEN_PRICE = 1.0
@@ -31,8 +33,10 @@ _HEIGHT_M = 0.05
 """Standard deviation of the height of a body between two segments."""
 _SEEN = 0.8
 """Frames with more than this share of the full area show the height."""
-_EQUALLY_MUCH = 0.6
-"""Heights are compared if the smaller full area is at least this share of the larger one."""
+_AS_LARGE = 1.6
+"""Full areas within this factor are alike."""
+_SMALL_M = 0.5
+"""What is smaller is seen whole, and shows the same area again."""
 _OVERLAP = 0.5
 """So large a share of the shorter of two segments of one body may be seen at the same time as the other."""
 _SHOWN_TWICE = 1.3
@@ -72,6 +76,8 @@ def candidates(rows: SegmentFrames, settings: Settings, *, fps: float) -> Candid
             for a, b, restless in zip(before.tolist(), after.tolist(), restlessness.tolist(), strict=True)
         ]
     ).reshape(-1)
+    unlike = np.nan_to_num(np.abs(np.log((shown[before] + _STILL) / (shown[after] + _STILL))))
+    price += _UNLIKE_PRICE * np.maximum(unlike - np.log(_ALIKE), 0.0)
     return Candidates(before=before, after=after, price=price)
 
 
@@ -131,12 +137,23 @@ def _price(pair: tuple[SegmentFrames, SegmentFrames], restlessness: float, fps: 
 
 
 def _difference(one: SegmentFrames, other: SegmentFrames) -> float:
-    """The price of the heights that two bodies reach up to; 0 where they do not show equally much of themselves."""
+    """The price of two looks: of the heights that bodies reach up to, or of the areas of what is small.
+
+    Heights say nothing where one shows less of itself than the other.
+    """
     areas = full_area(one), full_area(other)
-    if min(areas) < _EQUALLY_MUCH * max(areas):
+    ratio = max(areas) / min(areas)
+    if max(_extent(one), _extent(other)) < _SMALL_M:
+        return float(_UNLIKE_PRICE * max(np.log(ratio / _AS_LARGE), 0.0))
+    if ratio > _AS_LARGE:
         return 0.0
     tops = [
         float(np.median(rows.high[rows.area >= _SEEN * area, -1]))
         for rows, area in zip((one, other), areas, strict=True)
     ]
     return float(2.5 * np.log1p((tops[0] - tops[1]) ** 2 / (4 * _HEIGHT_M**2)))
+
+
+def _extent(one: SegmentFrames) -> float:
+    """The largest extent in any direction and frame, metres."""
+    return float((one.high - one.low).max())

@@ -17,8 +17,9 @@ from recording.motions import Event
 
 _TOUCH_M = 0.15
 """So near one another are the points of what is held and of who holds it."""
-_APART_M = 0.3
-"""So far away it is before it is caught, or after it is thrown; the parts of a body never are."""
+_APART_M, _ASTRAY_M = 0.3, 0.8
+"""So far away it is at some time before it is caught, or after it is thrown, and so far it goes about who holds it: no
+part of a body does both, not even where what lies between is hidden."""
 _TOGETHER_M_PER_S = 1.0
 """What is held moves about the part of the body next to it slower than this."""
 _NEXT_M = 0.3
@@ -41,9 +42,9 @@ class Thing:
     """The points of a motion, frame by frame."""
 
     first: int
-    points: tuple[Float[np.ndarray, "point 3"], ...]
+    points: tuple[Float[np.ndarray, "_ 3"], ...]
     """World axes, metres; none where nothing is seen."""
-    steps: tuple[Float[np.ndarray, "point 3"], ...]
+    steps: tuple[Float[np.ndarray, "_ 3"], ...]
     """Displacements to the next frame; NaN where a point is not followed."""
     extent: float
     """Median over frames of the largest extent, metres."""
@@ -82,6 +83,8 @@ class Contact:
     """Between their nearest points, metres; infinite where one of them is not seen."""
     speed: Float[np.ndarray, "moment"]
     """About the points next to it, metres a second; NaN where it is not known."""
+    beside: Float[np.ndarray, "moment 3"]
+    """Its centre's place about the larger one, metres, but for a constant."""
 
 
 def things(trajectories: Trajectories, motion: Int[np.ndarray, "trajectory"]) -> tuple[Thing, ...]:
@@ -103,7 +106,7 @@ def events_between(every: Sequence[Thing], clock: Clock) -> tuple[Event, ...]:
     A thing is *held* while for 0.2 s at least it touches a larger one (15 cm) and moves with the part of it that is
     next to it. It is also held where it comes into sight, or is lost, in touch with a larger one that is seen on: the
     hand hides it, or it counts as a part of who holds it. A merge leads from being free to being held, a split back.
-    What is free has been 30 cm away. So somebody who vanishes behind somebody else, and a ball that flies by, make no
+    What is free has been 30 cm away, and goes 80 cm about who holds it. So somebody who vanishes behind somebody else, and a ball that flies by, make no
     event.
     """
     found = [
@@ -160,18 +163,22 @@ def _stretches(thing: Thing, hole: int) -> list[Int[np.ndarray, "moment"]]:
 
 def _contact(thing: Thing, holder: Thing, stretch: Int[np.ndarray, "moment"], clock: Clock) -> Contact:
     gap, drift = np.full(len(stretch), np.inf), np.full((len(stretch), 3), np.nan)
+    onward = np.zeros((len(stretch), 3))
     for moment, frame in enumerate(stretch.tolist()):
         points, others = thing.at(frame), holder.at(frame)
         if not len(others):
             continue
         distance, _ = cKDTree(points).query(others)
         gap[moment] = distance.min()
+        onward[moment] = np.nan_to_num(holder.step(frame))
         next_to = distance <= _NEXT_M
         if next_to.any():
             drift[moment] = thing.step(frame) - _mean(holder.steps[frame - holder.first][next_to])
     span = clock.lasting(_SPEED_SECONDS)
     speed = [np.linalg.norm(_mean(drift[max(0, m - span) : m + span])) for m in range(len(stretch))]
-    return Contact(gap=gap, speed=np.array(speed) * clock.fps)
+    centre = np.array([thing.at(frame).mean(axis=0) for frame in stretch.tolist()])
+    beside = centre - (np.cumsum(onward, axis=0) - onward)
+    return Contact(gap=gap, speed=np.array(speed) * clock.fps, beside=beside)
 
 
 def _held(contacts: Sequence[Contact], clock: Clock) -> Int[np.ndarray, "moment"]:
@@ -209,11 +216,14 @@ def _seized(
 
 
 def _apart(contact: Contact, begin: int, end: int) -> bool:
+    """Whether the thing is free of the larger one from one moment to before another."""
     gap = contact.gap[begin:end]
-    return bool(np.max(gap[np.isfinite(gap)], initial=0.0) >= _APART_M)
+    farthest = np.max(gap[np.isfinite(gap)], initial=0.0)
+    astray = np.linalg.norm(contact.beside[end - 1] - contact.beside[begin])
+    return bool(farthest >= _APART_M and astray >= _ASTRAY_M)
 
 
-def _gap(one: Float[np.ndarray, "point 3"], other: Float[np.ndarray, "point 3"]) -> float:
+def _gap(one: Float[np.ndarray, "point 3"], other: Float[np.ndarray, "another 3"]) -> float:
     """The distance of the nearest two points, metres; infinite where one has none."""
     return float(cKDTree(one).query(other)[0].min()) if len(one) and len(other) else np.inf
 

@@ -20,17 +20,17 @@ _SLOWEST_M_PER_S = 1.5
 _MISS_M = 0.06
 """How far the centre of what is seen lies off the parabola at most (root mean square): half a ball may be hidden."""
 _LEAST_FRAMES = 3
-_LONGEST_SECONDS = 1.0
-"""Longer flights rise and fall by more than a room's height."""
+_LONGEST_SECONDS = 0.4
+"""In so short a hole no other ball takes the same way."""
 _CONFIDENCE = 0.95
 """Of a link that free fall makes."""
 
 
 def flights(rows: SegmentFrames, links: Iterable[Link], *, fps: float) -> tuple[Link, ...]:
-    """The links between segments that are one free fall, such as `links` leave alone on these sides; best ones first.
+    """The links between segments that are one free fall, such as `links` leave alone on these sides; short holes first.
 
-    Both are no larger than half a metre and are seen in three frames at least, one after the other and at most a
-    second apart, and the parabola through both misses their centres by at most 6 cm, at 1.5 m/s or more.
+    Both are no larger than half a metre and are seen in three frames at least, one after the other and at most
+    0.4 s apart, and the parabola through both misses their centres by at most 6 cm, at 1.5 m/s or more.
     """
     before = {link.before for link in links}
     after = {link.after for link in links}
@@ -43,7 +43,7 @@ def flights(rows: SegmentFrames, links: Iterable[Link], *, fps: float) -> tuple[
         if a not in before and b not in after and 0 < ones[b].frame[0] - ones[a].frame[-1] <= _LONGEST_SECONDS * fps
     }
     made: list[Link] = []
-    for a, b in sorted(misses, key=lambda pair: misses[pair]):
+    for a, b in sorted(misses, key=lambda pair: (ones[pair[1]].frame[0] - ones[pair[0]].frame[-1], misses[pair])):
         if misses[a, b] <= _MISS_M and a not in before and b not in after:
             before.add(a)
             after.add(b)

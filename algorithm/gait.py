@@ -98,17 +98,18 @@ def found_gait(trajectories: Trajectories, curve: Curve, *, fps: float, spacing_
     period = period_frames(trajectories, place, fps=fps)
     if period is None:
         return None
-    chosen = _examples(trajectories)
+    few = _examples(trajectories)
     carrier = curve
     for corrections_left in range(_CORRECTIONS, -1, -1):
-        known = moments_of(place, trajectories.frame, trajectories.first_row, period_frames=period)
-        shown = known.chosen(chosen)
+        place = _in_body(few, carrier, axes)
+        shown = moments_of(place, few.frame, few.first_row, period_frames=period)
         prior = fitted_prior(shown, least_noise_m=spacing_m)
         weight = shown.length**2
         examples = orbits_by_examples(shown, orbits_by_prior(shown, prior), weight, prior, themselves=True)
         if corrections_left:
-            carrier = _corrected(carrier, axes, (trajectories, place), (chosen, examples), (period, fps))
-            place = _in_body(trajectories, carrier, axes)
+            carrier = _corrected(carrier, axes, (few, place), examples, (period, fps))
+    place = _in_body(trajectories, carrier, axes)
+    known = moments_of(place, trajectories.frame, trajectories.first_row, period_frames=period)
     orbits = orbits_by_examples(known, examples, weight, prior)
     return Gait(period_frames=period, axes=axes, carrier=steadied(carrier, fps=fps), orbits=orbits)
 
@@ -124,30 +125,28 @@ def _in_body(trajectories: Trajectories, curve: Curve, axes: np.ndarray) -> Floa
     return place
 
 
-def _examples(trajectories: Trajectories) -> Int[np.ndarray, "example"]:
+def _examples(trajectories: Trajectories) -> Trajectories:
     """Trajectories evenly spread over all observations: the longer one is, the likelier it is among them."""
     total = np.cumsum(trajectories.length)
     sought = (np.arange(_EXAMPLES) + 0.5) / _EXAMPLES * total[-1]
-    return np.unique(np.searchsorted(total, sought))
+    chosen = np.zeros(trajectories.count, bool)
+    chosen[np.searchsorted(total, sought)] = True
+    return trajectories.chosen(chosen)
 
 
 def _corrected(
     curve: Curve,
     axes: np.ndarray,
     seen: tuple[Trajectories, np.ndarray],
-    known: tuple[np.ndarray, Orbits],
+    examples: Orbits,
     timing: tuple[float, float],
 ) -> Curve:
     """The curve moved by what the examples' orbits leave over, smoothed, as far as there are examples."""
     trajectories, place = seen
-    chosen, examples = known
     period, fps = timing
-    index = np.full(trajectories.count, -1)
-    index[chosen] = np.arange(len(chosen))
-    rows = np.flatnonzero(index[trajectories.trajectory] >= 0)
-    moment = trajectories.frame[rows] - curve.first
-    basis = harmonics(trajectories.frame[rows], period_frames=period)
-    left = place[rows] - np.einsum("ph,phx->px", basis, examples[index[trajectories.trajectory[rows]]])
+    moment = trajectories.frame - curve.first
+    basis = harmonics(trajectories.frame, period_frames=period)
+    left = place - np.einsum("ph,phx->px", basis, examples[trajectories.trajectory])
     size = len(curve.position)
     count = np.bincount(moment, minlength=size).astype(float)
     total = np.stack([np.bincount(moment, left[:, axis], size) for axis in range(3)], axis=1)

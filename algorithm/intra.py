@@ -23,14 +23,16 @@ Joins = tuple[Int[np.ndarray, "join"], Int[np.ndarray, "join"], Float[np.ndarray
 class Alignment:
     """How the representative is laid on each trajectory: place(t) = rotation r(t) + shift."""
 
-    rotation: Float[np.ndarray, "trajectory 3 3"]
+    rotation: Float[np.ndarray, "trajectory 3 3"] | None
+    """None where nothing is turned."""
     shift: Float[np.ndarray, "trajectory 3"]
 
     def extended(
         self, which: Int[np.ndarray, "place"], curve: Float[np.ndarray, "place 3"]
     ) -> Float[np.ndarray, "place 3"]:
         """Where the trajectories would be when the representative is at `curve`."""
-        return np.einsum("pij,pj->pi", self.rotation[which], curve) + self.shift[which]
+        turned = curve if self.rotation is None else np.einsum("pij,pj->pi", self.rotation[which], curve)
+        return turned + self.shift[which]
 
 
 def aligned(trajectories: Trajectories, curve: Curve, *, method: AlignmentName) -> Alignment:
@@ -41,11 +43,10 @@ def aligned(trajectories: Trajectories, curve: Curve, *, method: AlignmentName) 
     singular values is taken as it comes. `translation`: the shift at the trajectory's last frame.
     """
     followed = curve.position[trajectories.frame - curve.first]
-    count = trajectories.count
     if method == "translation":
         last = trajectories.first_row + trajectories.length - 1
         shift = trajectories.position[last] - followed[last]
-        return Alignment(rotation=np.broadcast_to(np.eye(3), (count, 3, 3)), shift=shift)
+        return Alignment(rotation=None, shift=shift)
     start = trajectories.first_row
     length = trajectories.length[:, None]
     centre = np.add.reduceat(trajectories.position, start, axis=0) / length
@@ -134,7 +135,8 @@ def _extension_costs(
     """The mean distance of each second trajectory from the extension of the first, metres."""
     moment = trajectories.frame - curve.first
     rows = trajectories.first_row, trajectories.length
-    laid = np.ascontiguousarray(alignment.rotation), alignment.shift, curve.position
+    turned = np.tile(np.eye(3), (trajectories.count, 1, 1)) if alignment.rotation is None else alignment.rotation
+    laid = turned, alignment.shift, curve.position
     return np.asarray(_mean_distances(pairs, rows, trajectories.position, moment, laid))
 
 

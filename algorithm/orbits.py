@@ -9,6 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Int
 
+from algorithm.compiled import compiled
+
 HARMONICS = 3
 _ROUNDS = 8
 """Rounds of expectation and maximisation: more change nothing."""
@@ -18,7 +20,7 @@ _LIKE = 0.12
 """Orbits that differ by this share of the extent are still somewhat like one another."""
 _OWN_SHARE = 0.05
 """Share of the variance over the whole body that neighbours have among themselves."""
-_CHUNK = 20_000
+_CHUNK = 5_000
 """Trajectories at a time: bounds the memory."""
 
 Orbits = Float[np.ndarray, "trajectory harmonic 3"]
@@ -57,9 +59,11 @@ class Prior:
 
 def harmonics(frame: Int[np.ndarray, "moment"], *, period_frames: float) -> Float[np.ndarray, "moment harmonic"]:
     """1, cos, sin, cos 2, sin 2 ... of the phase at the frames."""
-    phase = 2 * np.pi / period_frames * frame
+    first = int(frame.min()) if len(frame) else 0
+    last = int(frame.max()) if len(frame) else 0
+    phase = 2 * np.pi / period_frames * np.arange(first, last + 1)  # Many moments share a frame.
     waves = [wave(number * phase) for number in range(1, HARMONICS + 1) for wave in (np.cos, np.sin)]
-    return np.stack([np.ones(len(phase)), *waves], axis=1)
+    return np.asarray(np.stack([np.ones(len(phase)), *waves], axis=1)[frame - first])
 
 
 def moments_of(
@@ -71,21 +75,34 @@ def moments_of(
 ) -> Moments:
     """The sums over each trajectory; it begins at its first row and ends before the next one's."""
     length = np.diff(np.append(first_row, len(place)))
-    width = 1 + 2 * HARMONICS
-    gram, cross = np.zeros((len(first_row), width, width)), np.zeros((len(first_row), width, 3))
-    for begin in range(0, len(first_row), _CHUNK):
-        some = slice(begin, begin + _CHUNK)
-        start = first_row[some]
-        rows = slice(int(start[0]), int(start[-1] + length[some][-1]))
-        basis = harmonics(frame[rows], period_frames=period_frames)
-        for one in range(width):
-            for other in range(one, width):
-                total = np.add.reduceat(basis[:, one] * basis[:, other], start - start[0])
-                gram[some, one, other] = gram[some, other, one] = total
-        for axis in range(3):
-            cross[some, :, axis] = np.add.reduceat(basis * place[rows, axis, None], start - start[0], axis=0)
-    square = np.add.reduceat(np.einsum("px,px->p", place, place), first_row)
+    first = int(frame.min()) if len(frame) else 0
+    last = int(frame.max()) if len(frame) else 0
+    basis = harmonics(np.arange(first, last + 1), period_frames=period_frames)
+    gram, cross, square = _sums(first_row, length, basis, frame - first, place)
     return Moments(gram=gram, cross=cross, square=square, length=length.astype(float))
+
+
+@compiled
+def _sums(
+    first_row: np.ndarray, length: np.ndarray, basis: np.ndarray, moment: np.ndarray, place: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:  # pragma: no cover
+    """Of each trajectory the products of the harmonics with each other, with the places, and of these with themselves."""
+    count, width = len(first_row), basis.shape[1]
+    gram, cross, square = np.zeros((count, width, width)), np.zeros((count, width, 3)), np.zeros(count)
+    for trajectory in range(count):
+        for row in range(first_row[trajectory], first_row[trajectory] + length[trajectory]):
+            wave = basis[moment[row]]
+            for one in range(width):
+                for other in range(one + 1):
+                    gram[trajectory, one, other] += wave[one] * wave[other]
+                for axis in range(3):
+                    cross[trajectory, one, axis] += wave[one] * place[row, axis]
+            for axis in range(3):
+                square[trajectory] += place[row, axis] ** 2
+        for one in range(width):
+            for other in range(one):
+                gram[trajectory, other, one] = gram[trajectory, one, other]
+    return gram, cross, square
 
 
 def fitted_prior(known: Moments, *, least_noise_m: float) -> Prior:

@@ -1,7 +1,7 @@
 """How abruptly a motion changes: people hardly, balls that are caught and thrown very much."""
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from algorithm.path import evidence, full_area, path, smoothest
 from algorithm.representative import Curve
@@ -26,24 +26,26 @@ def restless_path(rows: SegmentFrames, *, fps: float, calmest: float) -> Curve:
 def shown_restlessness(one: SegmentFrames, *, fps: float) -> float:
     """A motion's usual change of speed, as white noise of acceleration, m^2 / s^3: 0.1 of walkers, 7 of juggled balls.
 
-    It is the median of the squared changes in 0.25 s, over that time and the three axes. NaN for what is seen too
-    shortly.
+    It is the median of the squared changes in 0.25 s, over that time and the three axes; of what is not seen for that
+    long in half of it. NaN for what is seen too shortly even for that.
     """
     place, _ = smoothest(evidence(one, full_area=full_area(one), fps=fps), fps=fps, restlessness=_FREE)
     seen = np.zeros(len(place), bool)
     seen[one.frame - one.frame[0]] = True
-    span, lag = max(1, round(_SPEED_SECONDS * fps)), max(1, round(_CHANGE_SECONDS * fps))
+    for part in (1.0, 0.5):
+        span, lag = (max(1, round(part * seconds * fps)) for seconds in (_SPEED_SECONDS, _CHANGE_SECONDS))
+        noise = np.sum(_changes(place, seen, span, lag) ** 2, axis=1) * fps**3 / (3.0 * lag)
+        if len(noise):
+            return float(np.median(noise))
+    return np.nan
+
+
+def _changes(
+    place: Float[np.ndarray, "moment 3"], seen: Bool[np.ndarray, "moment"], span: int, lag: int
+) -> Float[np.ndarray, "change 3"]:
+    """How much the displacement a frame changes within the lag, where all of it was seen, metres."""
     if len(place) <= span + lag:
-        return np.nan
-    change = _changes(place, span, lag) * fps
-    known = np.array([seen[begin : begin + span + lag + 1].all() for begin in range(len(change))])
-    if not known.any():
-        return np.nan
-    noise = np.sum(change[known] ** 2, axis=1) * fps / (3.0 * lag)
-    return float(np.median(noise))
-
-
-def _changes(place: Float[np.ndarray, "moment 3"], span: int, lag: int) -> Float[np.ndarray, "change 3"]:
-    """How much the displacement a frame changes within the lag, metres."""
+        return np.zeros((0, 3))
     speed = (place[span:] - place[:-span]) / span
-    return speed[lag:] - speed[:-lag]
+    known = np.lib.stride_tricks.sliding_window_view(seen, span + lag + 1).all(axis=1)
+    return np.asarray((speed[lag:] - speed[:-lag])[known])

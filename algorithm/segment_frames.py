@@ -6,13 +6,16 @@ from itertools import pairwise
 import numpy as np
 from jaxtyping import Float, Int
 
-from algorithm.outlines import reaches
+from algorithm.compiled import compiled
+from algorithm.outlines import DIRECTIONS, reaches
 from algorithm.patches import Patches
 from algorithm.trajectories import Trajectories
 
 _NOTHING = 1e-12
 _BARE_PIXELS = 1e-3
 """So much weighs a point without a pixel of its own: a segment of such alone has a centre too."""
+_POINTS, _AREA, _FOLLOWED, _CENTRE, _STEP = 0, 1, 2, 3, 6
+"""Columns of the sums; the last two are vectors."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -93,35 +96,75 @@ def segment_frames(
     camera_position: Float[np.ndarray, "3"],
 ) -> SegmentFrames:
     """The rows of all segments, from 0; trajectories of segment -1 count nowhere."""
-    rows = np.flatnonzero(segment[trajectories.trajectory] >= 0)
-    label = segment[trajectories.trajectory[rows]]
-    position = trajectories.position[rows]
-    onward = np.zeros(len(trajectories.trajectory), bool)
-    onward[:-1] = trajectories.trajectory[1:] == trajectories.trajectory[:-1]
-    following = np.minimum(rows + 1, len(trajectories.trajectory) - 1)
-    step = np.where(onward[rows, None], trajectories.position[following] - position, 0.0)
-    order = np.lexsort((trajectories.frame[rows], label))
-    label, frame = label[order], trajectories.frame[rows][order]
-    start = _starts(label, frame)
-    if not len(start):
+    known = np.flatnonzero(segment >= 0)
+    if not len(known):
         return _nothing()
-    reach = reaches(position[order]).astype(float)
-    points = np.diff([*start, len(order)]).astype(float)
-    square = np.sum((position[order] - camera_position) ** 2, axis=1)
-    weight = (patches.pixels[rows][order] + _BARE_PIXELS) * square
-    area = np.add.reduceat(weight, start)
-    followed = np.add.reduceat(onward[rows][order] * weight, start)
+    count = int(segment.max()) + 1
+    first, last = np.full(count, np.iinfo(np.int64).max // 2), np.full(count, -1)
+    np.minimum.at(first, segment[known], trajectories.first_frame[known])
+    np.maximum.at(last, segment[known], trajectories.last_frame[known])
+    span = np.maximum(last - first + 1, 0)
+    room = np.cumsum(span) - span - first  # Where frame 0 of each segment would be.
+    observed = trajectories.trajectory, trajectories.frame, trajectories.position
+    totals, reach = _totals(observed, (segment, room), (patches.pixels, patches.centre), camera_position, span.sum())
+    seen = np.flatnonzero(totals[:, _POINTS] > 0)
+    label = np.repeat(np.arange(count), span)[seen]
+    totals, reach = totals[seen], reach[seen].astype(float)
+    area, followed = totals[:, _AREA], totals[:, _FOLLOWED]
     return SegmentFrames(
-        segment=label[start],
-        frame=frame[start],
-        points=points,
+        segment=label,
+        frame=seen - room[label],
+        points=totals[:, _POINTS],
         area=area,
-        centre=np.add.reduceat(patches.centre[rows][order] * weight[:, None], start, axis=0) / area[:, None],
+        centre=totals[:, _CENTRE : _CENTRE + 3] / area[:, None],
         followed=followed,
-        step=np.add.reduceat(step[order] * weight[:, None], start, axis=0) / np.maximum(followed, _NOTHING)[:, None],
-        low=np.minimum.reduceat(reach, start),
-        high=np.maximum.reduceat(reach, start),
+        step=totals[:, _STEP : _STEP + 3] / np.maximum(followed, _NOTHING)[:, None],
+        low=reach[:, 0],
+        high=reach[:, 1],
     )
+
+
+@compiled
+def _totals(
+    observed: tuple[np.ndarray, np.ndarray, np.ndarray],
+    named: tuple[np.ndarray, np.ndarray],
+    patches: tuple[np.ndarray, np.ndarray],
+    eye: np.ndarray,
+    rows: int,
+) -> tuple[np.ndarray, np.ndarray]:  # pragma: no cover
+    """Sums over the points of each segment and frame, in the columns below, and their least and largest reach."""
+    trajectory, frame, position = observed
+    segment, room = named
+    pixels, centre = patches
+    totals = np.zeros((rows, _STEP + 3))
+    reach = np.empty((rows, 2, len(DIRECTIONS)), np.float32)
+    reach[:, 0], reach[:, 1] = np.inf, -np.inf
+    for point in range(len(trajectory)):
+        label = segment[trajectory[point]]
+        if label < 0:
+            continue
+        row = room[label] + frame[point]
+        square = 0.0
+        for axis in range(3):
+            square += (position[point, axis] - eye[axis]) ** 2
+        weight = (pixels[point] + _BARE_PIXELS) * square
+        totals[row, _POINTS] += 1.0
+        totals[row, _AREA] += weight
+        onward = point + 1 < len(trajectory) and trajectory[point + 1] == trajectory[point]
+        if onward:
+            totals[row, _FOLLOWED] += weight
+        for axis in range(3):
+            totals[row, _CENTRE + axis] += centre[point, axis] * weight
+            if onward:
+                totals[row, _STEP + axis] += (position[point + 1, axis] - position[point, axis]) * weight
+        for number in range(len(DIRECTIONS)):
+            distance = 0.0
+            for axis in range(3):
+                distance += position[point, axis] * DIRECTIONS[number, axis]
+            along = np.float32(distance)
+            reach[row, 0, number] = min(reach[row, 0, number], along)
+            reach[row, 1, number] = max(reach[row, 1, number], along)
+    return totals, reach
 
 
 def _starts(segment: np.ndarray, frame: np.ndarray) -> Int[np.ndarray, "row"]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Bool, Float, Float32, Int
@@ -27,12 +28,12 @@ class Trajectories:
         """The number of trajectories."""
         return int(self.trajectory[-1]) + 1 if len(self.trajectory) else 0
 
-    @property
+    @cached_property
     def length(self) -> Int[np.ndarray, "trajectory"]:
         """Frames that each trajectory lasts."""
         return np.bincount(self.trajectory, minlength=self.count)
 
-    @property
+    @cached_property
     def first_row(self) -> Int[np.ndarray, "trajectory"]:
         """The row at which each trajectory begins."""
         return np.concatenate([[0], np.cumsum(self.length)[:-1]]).astype(int)[: self.count]
@@ -49,10 +50,11 @@ class Trajectories:
 
     def chosen(self, which: Bool[np.ndarray, "trajectory"]) -> "Trajectories":
         """The chosen trajectories, numbered anew in the same order."""
-        rows = which[self.trajectory]
-        number = np.cumsum(which) - 1
+        length = self.length[which]
+        number = np.repeat(np.arange(len(length)), length)
+        rows = np.arange(len(number)) + np.repeat(self.first_row[which] - (np.cumsum(length) - length), length)
         return Trajectories(
-            trajectory=number[self.trajectory[rows]],
+            trajectory=number,
             frame=self.frame[rows],
             position=self.position[rows],
             column_row=self.column_row[rows],

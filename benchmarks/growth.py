@@ -111,7 +111,10 @@ def _save_followed(recording: Recording, folder: Path, preset: Preset, *, at_mos
     kept = np.zeros(count, bool)
     kept[np.linspace(0, count - 1, min(count, at_most)).astype(int)] = True
     some = chosen(found, kept)
-    np.savez(folder / "followed.npz", spacing_m=some.spacing_m, **vars(some.trajectories), **vars(some.patches))
+    columns = {
+        entry.name: getattr(part, entry.name) for part in (some.trajectories, some.patches) for entry in fields(part)
+    }
+    np.savez(folder / "followed.npz", spacing_m=some.spacing_m, **columns)
 
 
 def _load_followed(folder: Path) -> Followed:

@@ -100,7 +100,7 @@ def _draw_pair(panel: Axes, sweep: Sweep, rows: Sequence[Row], pair: tuple[str, 
     for x in _nearest(across, paper_values(sweep, pair[0], scenes)):
         for y in _nearest(up, paper_values(sweep, pair[1], scenes)):
             panel.plot(x, y, marker="s", markersize=26, fillstyle="none", color=COLOURS[1], markeredgewidth=2)
-    if mean.size <= _MOST_NUMBERS:
+    if mean.size <= _MOST_NUMBERS and np.isfinite(mean).any():
         _write_numbers(panel, mean)
     panel.set_xticks(range(len(across)), [_name(level.value) for level in across])
     panel.set_yticks(range(len(up)), [_name(level.value) for level in up])
@@ -110,7 +110,8 @@ def _draw_pair(panel: Axes, sweep: Sweep, rows: Sequence[Row], pair: tuple[str, 
 def _write_numbers(panel: Axes, mean: np.ndarray) -> None:
     """The number of each cell, dark on bright and bright on dark."""
     middle = (np.nanmin(mean) + np.nanmax(mean)) / 2
-    for (row, column), value in np.ndenumerate(mean):
+    for row, column in np.argwhere(np.isfinite(mean)):
+        value = mean[row, column]
         colour = "black" if value > middle else "white"
         panel.text(column, row, f"{value:.3f}", ha="center", va="center", color=colour, fontsize=7)
 
