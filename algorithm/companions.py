@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 from scipy.spatial import cKDTree
 
-from algorithm.outlines import size_limits
+from algorithm.outlines import HORIZONTAL, size_limits
 from algorithm.segment_frames import SegmentFrames
 from algorithm.settings import Settings
 
@@ -72,7 +72,8 @@ def meetings(rows: SegmentFrames, *, reach_m: float) -> Meetings:
 def union_fits(rows: SegmentFrames, met: Meetings, settings: Settings) -> Bool[np.ndarray, "meeting"]:
     """Where both rows together are no larger than a body."""
     extent = np.maximum(rows.high[met.one], rows.high[met.other]) - np.minimum(rows.low[met.one], rows.low[met.other])
-    return (extent <= size_limits(widest_m=settings.widest_m, tallest_m=settings.tallest_m)).all(axis=1)
+    small = (extent <= size_limits(widest_m=settings.widest_m, tallest_m=settings.tallest_m)).all(axis=1)
+    return small & (extent[:, HORIZONTAL].min(axis=1) <= settings.slimmest_m)
 
 
 def gaps(rows: SegmentFrames, met: Meetings) -> Float[np.ndarray, "meeting"]:

@@ -14,7 +14,6 @@ from algorithm.sureness import sureness
 from algorithm.trajectories import Trajectories
 from recording.motions import INTER, INTRA
 
-
 _CHUNK = 200_000
 """Places at a time: bounds the memory."""
 
@@ -171,8 +170,8 @@ def _completion(
     """The places in world axes, swing included, and how sure they are."""
     joins, gait, curve, fps = made
     count = len(places.frame)
-    position, confidence = np.empty((count, 3), np.float32), np.empty(count, np.float32)
-    source = np.empty(count, np.uint8)
+    position, confidence = np.empty((count, 3)), np.empty(count, np.float32)
+    source = np.empty(count, np.int8)
     for begin in range(0, count, _CHUNK):
         part = slice(begin, begin + _CHUNK)
         before, after, frame, cost = places.before[part], places.after[part], places.frame[part], places.cost[part]

@@ -53,6 +53,8 @@ class Candidates:
     after: Int[np.ndarray, "link"]
     price: Float[np.ndarray, "link"]
     """Negative log of how much likelier one motion is than two: below 0 they rather are one."""
+    restlessness: Float[np.ndarray, "link"]
+    """That was reckoned with, m^2 / s^3."""
 
 
 def candidates(rows: SegmentFrames, settings: Settings, *, fps: float) -> Candidates:
@@ -78,7 +80,7 @@ def candidates(rows: SegmentFrames, settings: Settings, *, fps: float) -> Candid
     ).reshape(-1)
     unlike = np.nan_to_num(np.abs(np.log((shown[before] + _STILL) / (shown[after] + _STILL))))
     price += _UNLIKE_PRICE * np.maximum(unlike - np.log(_ALIKE), 0.0)
-    return Candidates(before=before, after=after, price=price)
+    return Candidates(before=before, after=after, price=price, restlessness=restlessness)
 
 
 def _reachable(

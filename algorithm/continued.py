@@ -51,7 +51,7 @@ def continued(followed: Followed, segments: Segments, settings: Settings, linker
     motion = _renumbered(gathered(rows.renamed(motion), settings, fps=followed.fps)[motion])
     motion = _without_few(motion, segments, settings)
     rows = rows.renamed(motion)
-    of_trajectory = np.where(segments >= 0, motion[segments], -1)
+    of_trajectory = np.append(motion, -1)[segments]  # Noise, -1, stays noise.
     motions = tuple(
         _motion(followed, segments, of_trajectory == number, one, settings) for number, one in enumerate(rows.singles())
     )

@@ -106,8 +106,8 @@ def events_between(every: Sequence[Thing], clock: Clock) -> tuple[Event, ...]:
     A thing is *held* while for 0.2 s at least it touches a larger one (15 cm) and moves with the part of it that is
     next to it. It is also held where it comes into sight, or is lost, in touch with a larger one that is seen on: the
     hand hides it, or it counts as a part of who holds it. A merge leads from being free to being held, a split back.
-    What is free has been 30 cm away, and goes 80 cm about who holds it. So somebody who vanishes behind somebody else, and a ball that flies by, make no
-    event.
+    What is free has been 30 cm away, and goes 80 cm about who holds it. So somebody who vanishes behind somebody else,
+    and a ball that flies by, make no event.
     """
     found = [
         event
@@ -193,9 +193,7 @@ def _held(contacts: Sequence[Contact], clock: Clock) -> Int[np.ndarray, "moment"
     return held
 
 
-def _seized(
-    thing: Thing, every: Sequence[Thing], larger: Sequence[int], frame: int, onward: int, clock: Clock
-) -> int:
+def _seized(thing: Thing, every: Sequence[Thing], larger: Sequence[int], frame: int, onward: int, clock: Clock) -> int:
     """Who holds the thing beyond the end (`onward` 1) or the beginning (-1) of a stretch, as it stands in `larger`.
 
     It is lost in touch, or would have been a frame later, and who touches it is seen on for 0.2 s; -1 for nobody.

@@ -22,8 +22,10 @@ _LEAVING, _VANISHING = 1.0, 6.0
 """The prices of an end without a continuation: at the border of the picture, and in its middle."""
 _SCRAP, _WHOLE = 0.02, 0.3
 """A segment with less than the first share of what a near one shows links nothing; beyond the second all counts."""
-_SURE_BASE, _SURE_SLOPE = 0.0, 0.5
-"""Of the logistic curve from margin to confidence, fitted on development seeds."""
+_SURE = 2.8, 0.11, 1.3
+"""Of the logistic curve from margin and restlessness to confidence, fitted on development recordings."""
+_RIVAL = 0.5
+"""How fast the confidence of what was not chosen falls with what it would cost."""
 _LONG_SECONDS, _MANY = 0.3, 10.0
 """A segment that is seen for so long, with so many points a frame, has its full weight."""
 _FEWEST = 3.0
@@ -40,6 +42,8 @@ class Links:
     chosen: Bool[np.ndarray, "link"]
     margin: Float[np.ndarray, "link"]
     """How much dearer everything gets without a chosen link, or with another one: above 0 and below it."""
+    restlessness: Float[np.ndarray, "link"]
+    """Of what is linked, m^2 / s^3."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -65,12 +69,18 @@ def linked(possible: Candidates, standing: Standing) -> Links:
     chosen = np.zeros(len(gain), bool)
     for part in _components(possible, len(standing.begin)):
         chosen[part[_assigned(before[part], after[part], gain[part])]] = True
-    return Links(before=before, after=after, chosen=chosen, margin=_margins(possible, gain, chosen))
+    margin = _margins(possible, gain, chosen)
+    return Links(before=before, after=after, chosen=chosen, margin=margin, restlessness=possible.restlessness)
 
 
 def confidences(links: Links) -> Float[np.ndarray, "link"]:
-    """The probability that each link is right, from its margin."""
-    return 1.0 / (1.0 + np.exp(-np.clip(_SURE_BASE + _SURE_SLOPE * links.margin, -50.0, 50.0)))
+    """The probability that each link is right: the larger its margin, and the calmer what it links.
+
+    Of one that was not chosen it is at most a half, and falls with what choosing it would cost.
+    """
+    evidence = _SURE[0] + _SURE[1] * links.margin - _SURE[2] * np.log(links.restlessness)
+    evidence = np.where(links.chosen, evidence, _RIVAL * np.minimum(links.margin, 0.0))
+    return 1.0 / (1.0 + np.exp(-np.clip(evidence, -50.0, 50.0)))
 
 
 def standings(rows: SegmentFrames, camera: Camera, settings: Settings, *, frames: int, fps: float) -> Standing:

@@ -86,7 +86,7 @@ def moments_of(
 def _sums(
     first_row: np.ndarray, length: np.ndarray, basis: np.ndarray, moment: np.ndarray, place: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:  # pragma: no cover
-    """Of each trajectory the products of the harmonics with each other, with the places, and of these with themselves."""
+    """Of each trajectory the sums of the harmonics' products with each other and the places, and of squared places."""
     count, width = len(first_row), basis.shape[1]
     gram, cross, square = np.zeros((count, width, width)), np.zeros((count, width, 3)), np.zeros(count)
     for trajectory in range(count):
@@ -118,19 +118,20 @@ def fitted_prior(known: Moments, *, least_noise_m: float) -> Prior:
     mean = np.concatenate([centre, np.zeros(3 * width - 3)])
     scale = np.concatenate([np.full(3, extent), np.full(3 * width - 3, _START_M * extent)])
     prior = Prior(mean=mean, covariance=np.diag(scale**2), noise_m=2 * least_noise_m)
+    gram = _on_all_axes(known.gram)
     for _ in range(_ROUNDS):
-        orbit, variance = _expected(known, prior)
+        orbit, variance = _expected(known, gram, prior)
         mean = orbit.mean(axis=0)
         apart = orbit - mean
         covariance = (variance.sum(axis=0) + apart.T @ apart) / len(orbit) + 1e-10 * extent**2 * np.eye(3 * width)
-        noise = np.sqrt(_expected_miss(known, orbit, variance) / (3 * known.length.sum()))
+        noise = np.sqrt(_expected_miss(known, gram, (orbit, variance)) / (3 * known.length.sum()))
         prior = Prior(mean=mean, covariance=covariance, noise_m=max(float(noise), least_noise_m))
     return prior
 
 
 def orbits_by_prior(known: Moments, prior: Prior) -> Orbits:
     """The likeliest orbit of each trajectory, given how orbits are distributed."""
-    return _expected(known, prior)[0].reshape(known.cross.shape)
+    return _expected(known, _on_all_axes(known.gram), prior)[0].reshape(known.cross.shape)
 
 
 def orbits_by_examples(
@@ -178,18 +179,22 @@ def _squared_misses(
 
 
 def _expected(
-    known: Moments, prior: Prior
+    known: Moments, gram: Float[np.ndarray, "trajectory coefficient coefficient"], prior: Prior
 ) -> tuple[Float[np.ndarray, "trajectory coefficient"], Float[np.ndarray, "trajectory coefficient coefficient"]]:
     """Mean and covariance of each trajectory's coefficients."""
     inverse = np.linalg.inv(prior.covariance)
-    variance = np.linalg.inv(inverse + _on_all_axes(known.gram) / prior.noise_m**2)
+    variance = np.linalg.inv(inverse + gram / prior.noise_m**2)
     right = inverse @ prior.mean + known.cross.reshape(len(known.cross), -1) / prior.noise_m**2
     return np.einsum("tij,tj->ti", variance, right), variance
 
 
-def _expected_miss(known: Moments, orbit: np.ndarray, variance: np.ndarray) -> float:
+def _expected_miss(
+    known: Moments,
+    gram: Float[np.ndarray, "trajectory coefficient coefficient"],
+    expected: tuple[np.ndarray, np.ndarray],
+) -> float:
     """The sum of the squared distances of all places from their orbits, as uncertain as these are."""
-    gram = _on_all_axes(known.gram)
+    orbit, variance = expected
     flat = known.cross.reshape(len(known.cross), -1)
     own = known.square - 2 * (orbit * flat).sum(axis=1) + np.einsum("ti,tij,tj->t", orbit, gram, orbit, optimize=True)
     return float(own.sum() + np.einsum("tij,tij->", gram, variance))

@@ -19,6 +19,10 @@ DIRECTIONS: Float[np.ndarray, "direction 3"] = np.concatenate(
 """Widths are measured along four horizontal directions (8 % too small at the worst), height along the last."""
 
 
+HORIZONTAL = slice(0, _HORIZONTALS)
+"""The horizontal ones of them."""
+
+
 def size_limits(*, widest_m: float, tallest_m: float) -> Float32[np.ndarray, "direction"]:
     """The largest extent along each of `DIRECTIONS`, metres."""
     return np.array([widest_m] * _HORIZONTALS + [tallest_m], np.float32)

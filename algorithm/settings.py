@@ -69,6 +69,8 @@ class Settings(Frozen):
     """Metres: neighbours that keep together worse than this are not of one body (`grouping.separations`)."""
     widest_m: Positive = 1.25
     """Metres: no body is wider than this in any horizontal direction; an honest prior for people (paper: none)."""
+    slimmest_m: Positive = 0.8
+    """Metres: seen from some side every body is as slim as this; two people in step are not (paper: none)."""
     tallest_m: Positive = 2.1
     """Metres: no body is taller than this (paper: none)."""
     eps3: Positive = 10.0
@@ -93,6 +95,9 @@ class Settings(Frozen):
     companion_speed_m_per_s: Positive = 1.2
     """Metres a second: parts of one body move about one another slower than this on average; a thrown ball does not."""
 
+    restlessness: Positive = 0.05
+    """Square metres a second cubed: how much speed changes by itself; the less, the straighter paths are in holes."""
+
     completing: CompletingName = "continuation"
     """`continuation` = segments are linked over the whole recording first, then points are completed; `bottom_up` =
     in segments first, then across (paper)."""
@@ -115,10 +120,8 @@ class Settings(Frozen):
     """Seconds that two segments of one body may be seen at the same time, on both sides of a trunk."""
     fastest_walk_m_per_s: Positive = 4.0
     """Metres a second: a hole that asks for more speed is not bridged."""
-    restlessness: Positive = 0.05
-    """Square metres a second cubed: how much speed changes by itself; the less, the straighter paths are in holes."""
     restlessness_of_links: Positive = 0.3
-    """The same for the judgement of links, where a turn must be possible."""
+    """Like `restlessness`, for the judgement of links, where a turn must be possible."""
     longest_hole_seconds: Positive = 3.0
     """Seconds: a longer hole is not bridged."""
 

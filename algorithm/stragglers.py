@@ -51,17 +51,37 @@ def gathered(rows: SegmentFrames, settings: Settings, *, fps: float) -> Int[np.n
     """
     ones = rows.singles()
     hosts = [_host(one, settings, fps) for one in ones]
-    order = sorted(range(len(ones)), key=lambda number: hosts[number].shown)
+    shown = np.array([host.shown for host in hosts])
+    near = _Nearness(hosts, reach_m=settings.tallest_m)
     into = np.arange(len(ones))
-    for place, number in enumerate(order):
-        larger = [other for other in order[place + 1 :] if hosts[number].area <= _LITTLE * hosts[other].area]
-        distances = {other: _distance(ones[number], hosts[other], settings, fps) for other in larger}
+    for number, one in enumerate(ones):
+        possible = near.hosts_of(one, area=hosts[number].area)
+        larger = possible[shown[possible] > shown[number]].tolist()
+        distances = {other: _distance(one, hosts[other], settings, fps) for other in larger}
         nearest = min(distances, key=lambda other: distances[other], default=number)
         if distances.get(nearest, np.inf) < np.inf:
             into[number] = nearest
     for _ in range(len(ones)):
         into = into[into]
     return into
+
+
+class _Nearness:
+    """Where every host is in every frame, to ask few of them."""
+
+    def __init__(self, hosts: list[Host], *, reach_m: float) -> None:
+        last = max((host.curve.last for host in hosts), default=-1)
+        self._reach_m = reach_m
+        self._area = np.array([host.area for host in hosts])
+        self._place = np.full((last + 1, len(hosts), 3), np.nan, np.float32)
+        for number, host in enumerate(hosts):
+            self._place[host.curve.first : host.curve.last + 1, number] = host.curve.position
+
+    def hosts_of(self, one: SegmentFrames, *, area: float) -> Int[np.ndarray, "host"]:
+        """The hosts that show enough beside a full area, and at its middle frame are about where the motion is."""
+        middle = len(one.frame) // 2
+        apart = np.linalg.norm(self._place[one.frame[middle]] - one.centre[middle], axis=1)
+        return np.flatnonzero((apart <= self._reach_m) & (area <= _LITTLE * self._area))
 
 
 def _host(one: SegmentFrames, settings: Settings, fps: float) -> Host:

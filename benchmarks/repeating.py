@@ -26,21 +26,25 @@ def chosen(followed: Followed, which: Bool[np.ndarray, "trajectory"]) -> Followe
 def repeated(followed: Followed, factor: int, arm: Arm, *, pause_frames: int) -> Followed:
     """So many copies: side by side across the camera's view, as it would see them, or one after the other."""
     one, around = followed.trajectories, followed.patches
-    copy = np.repeat(np.arange(factor), len(one.frame))
-    frame, period = np.tile(one.frame, factor), followed.frames + pause_frames
+    number, frame = np.tile(one.trajectory, factor), np.tile(one.frame, factor)
+    period = followed.frames + pause_frames
     position, centre = np.tile(one.position, (factor, 1)), np.tile(around.centre, (factor, 1))
     column_row = np.tile(one.column_row, (factor, 1))
-    if arm == "time":
-        frame += copy * period
-    else:
-        right, ahead, eye = (followed.camera.world_from_camera[:3, axis] for axis in (0, 2, 3))
-        column_row[:, 0] += copy * (followed.camera.fx * APART_M / ((position - eye) @ ahead))
-        aside_m = APART_M * copy[:, None] * right
-        position, centre = position + aside_m, centre + aside_m
+    right, ahead, eye = (followed.camera.world_from_camera[:3, axis] for axis in (0, 2, 3))
+    aside_px = followed.camera.fx * APART_M / ((one.position - eye) @ ahead)
+    for copy in range(factor):  # In place, one by one: all at once they would take twice the memory.
+        rows = slice(copy * len(one.frame), (copy + 1) * len(one.frame))
+        number[rows] += copy * one.count
+        if arm == "time":
+            frame[rows] += copy * period
+            continue
+        column_row[rows, 0] += copy * aside_px
+        position[rows] += APART_M * copy * right
+        centre[rows] += APART_M * copy * right
     return replace(
         followed,
         trajectories=Trajectories(
-            trajectory=np.tile(one.trajectory, factor) + copy * one.count,
+            trajectory=number,
             frame=frame,
             position=position,
             column_row=column_row,

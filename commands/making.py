@@ -94,8 +94,11 @@ def generate_command(
         overwrite=common.overwrite,
     )
     seeds = range(seed, seed + count)
-    with common.progress(), scaling.team_if_needed(common, tasks=count) as client:
-        done = generate(order, seeds=seeds, backend=backend, client=client)
+    try:
+        with common.progress(), scaling.team_if_needed(common, tasks=count) as client:
+            done = generate(order, seeds=seeds, backend=backend, client=client)
+    finally:
+        order.shelf.tidy()  # Once more: workers that were interrupted have ended only now.
     if done.recordings:
         common.say(f"generated {output}: {done.sentence}")
     if done.refusal is not None:

@@ -57,7 +57,8 @@ def test_simulate_solve_and_evaluate_make_scores_under_the_contracts_keys(
     scores = json.loads(capsys.readouterr().out)
     assert list(scores) == [
         *("scene", "frames", "objects", "points_per_frame", "holes", "longest_hole_frames", "coverage"),
-        *("trajectories", "segments", "motions", "identity", "completion", "links", "seconds", "version", "preset"),
+        *("trajectories", "segments", "motions", "identity", "completion", "links", "events", "calibration"),
+        *("seconds", "version", "preset"),
     ]
     assert scores["objects"] == 1
     assert scores["preset"] == "default"

@@ -20,6 +20,10 @@ from evaluation.sweeps.table import Row
 _IN_A_ROW = 3
 _PANEL = (4.4, 3.3)
 """Width and height, inches."""
+_WIDE = 10.0
+"""Values that span this factor stand on a logarithmic axis."""
+_MARGIN, _LEAST_HEIGHT = 0.25, 0.02
+"""Room above and below the means, as a share of their range, and the least that counts as range."""
 _MOST_NUMBERS = 36
 """A heat map of more cells bears no numbers."""
 
@@ -69,21 +73,27 @@ def _panels(count: int) -> tuple[Figure, list[Axes]]:
 
 
 def _draw_curve(panel: Axes, sweep: Sweep, rows: Sequence[Row], axis: str) -> None:
+    """One axis; its height is that of the means, and intervals may run out of it."""
     levels = levels_of(sweep, rows, axis)
-    places = _places(levels)
+    places, line = _places(levels), "-" if _numeric(levels) else "none"
     scenes = by(rows, "scene")
-    for number, scene in enumerate(scenes if len(scenes) > 1 else ()):
-        means = [_mean([row for row in level.rows if row["scene"] == scene], sweep.goal) for level in levels]
-        colour = COLOURS[number % len(COLOURS)]
-        line = "-" if _numeric(levels) else "none"
-        panel.plot(places, means, color=colour, linestyle=line, linewidth=0.9, marker=".", alpha=0.8, label=scene)
     intervals = [interval_of(level.rows, sweep.goal) for level in levels]
     means = [np.nan if one is None else one.mean for one in intervals]
+    heights = [*means]
+    for number, scene in enumerate(scenes if len(scenes) > 1 else ()):
+        own = [_mean([row for row in level.rows if row["scene"] == scene], sweep.goal) for level in levels]
+        colour = COLOURS[number % len(COLOURS)]
+        panel.plot(places, own, color=colour, linestyle=line, linewidth=0.9, marker=".", alpha=0.8, label=scene)
+        heights += own
     widths = [0.0 if one is None else one.half_width or 0.0 for one in intervals]
-    line = "-" if _numeric(levels) else "none"
-    panel.errorbar(places, means, yerr=widths, color="black", linestyle=line, marker="o", capsize=3, label="mean")
+    panel.errorbar(
+        places, means, yerr=widths, color="black", linestyle=line, marker="o", elinewidth=0.8, capsize=3, label="mean"
+    )
+    if np.isfinite(heights).any():
+        room = max(np.nanmax(heights) - np.nanmin(heights), _LEAST_HEIGHT) * _MARGIN
+        panel.set_ylim(np.nanmin(heights) - room, np.nanmax(heights) + room)
     _mark_paper(panel, levels, paper_values(sweep, axis, list(scenes)))
-    _name_places(panel, sweep, levels, axis)
+    _name_places(panel, levels)
     panel.set(xlabel=axis, ylabel=sweep.goal)
     panel.grid(alpha=0.3)
 
@@ -126,11 +136,15 @@ def _places(levels: Sequence[Level]) -> list[float]:
     return [float(level.value) for level in levels] if _numeric(levels) else list(map(float, range(len(levels))))
 
 
-def _name_places(panel: Axes, sweep: Sweep, levels: Sequence[Level], axis: str) -> None:
+def _name_places(panel: Axes, levels: Sequence[Level]) -> None:
+    """Names stand below their places; numbers of several orders on a logarithmic axis, each as it is."""
+    names, places = [_name(level.value) for level in levels], _places(levels)
     if not _numeric(levels):
-        panel.set_xticks(range(len(levels)), [_name(level.value) for level in levels], rotation=30)
-    elif sweep.axes[axis].scale == "logarithmic":
+        panel.set_xticks(places, names, rotation=30)
+    elif min(places) > 0 and max(places) / min(places) >= _WIDE:
         panel.set_xscale("log")
+        panel.set_xticks(places, names)
+        panel.minorticks_off()
 
 
 def _mark_paper(panel: Axes, levels: Sequence[Level], values: Sequence[Value]) -> None:

@@ -1,3 +1,5 @@
+"""What is caught and thrown, by hand."""
+
 from collections.abc import Sequence
 
 import numpy as np

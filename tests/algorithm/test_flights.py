@@ -1,3 +1,5 @@
+"""Parts of free falls."""
+
 import numpy as np
 import pytest
 

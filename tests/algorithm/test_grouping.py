@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 from hypothesis import given
+from hypothesis import settings as few
 from hypothesis import strategies as st
-from made import body, line, person, random_paths, same_partition, trajectories_of
+from made import body, followed_of, line, person, random_paths, same_partition, trajectories_of
 
 from algorithm.affinity import neighbour_pairs
+from algorithm.continued import common_fates
 from algorithm.grouping import groups, separations
 from algorithm.outlines import DIRECTIONS, Intervals, reaches, size_limits, united
 from algorithm.settings import Settings
@@ -20,14 +22,16 @@ def fates(trajectories: Trajectories) -> np.ndarray:
     return groups(trajectories, Settings(), fps=FPS)
 
 
-def test_a_rigid_body_is_one_group() -> None:
-    made = trajectories_of(person(0, (0, 0, 1), (0.04, 0, 0), 20))
-    assert fates(made).max() == 0
+@pytest.mark.parametrize("count", [50, 200, 1000])
+def test_a_rigid_body_is_one_with_its_companions(count: int) -> None:
+    made = trajectories_of(person(0, (0, 0, 1), (0.04, 0, 0), 20, count=count))
+    assert common_fates(followed_of(made), Settings()).max() == 0
 
 
-def test_two_who_walk_in_step_with_a_gap_are_two_groups() -> None:
+def test_two_who_walk_in_step_with_a_gap_have_no_group_in_common() -> None:
     made = trajectories_of(person(0, (0, 0, 1), (0.04, 0, 0), 30) + person(0, (0.7, 0, 1), (0.04, 0, 0), 30))
-    assert same_partition(fates(made), np.repeat([0, 1], len(made.length) // 2))
+    found = fates(made)
+    assert not set(found[:200]) & set(found[200:])
 
 
 def test_a_crowd_without_gaps_is_parted_at_the_size_of_a_body() -> None:
@@ -95,38 +99,59 @@ def test_separations_agree_with_their_definition(seed: int) -> None:
         assert separation == pytest.approx(expected)
 
 
-def naive_unions(paths: list, pairs: tuple, limit: np.ndarray) -> np.ndarray:
-    """The same by sets of points; groups of fewer than ten, which no pair more has to speak for."""
-    label = np.arange(len(paths))
-    for one, other in zip(*pairs, strict=True):
-        if label[one] == label[other]:
+Paths = list[tuple[int, np.ndarray]]
+
+
+def outline(paths: Paths, members: frozenset, frame: int) -> np.ndarray:
+    """Least and largest reach of the members seen in a frame; none is seen: no rows."""
+    seen = [paths[n][1][frame - paths[n][0]] for n in members if 0 <= frame - paths[n][0] < len(paths[n][1])]
+    reach = np.array(seen).reshape(-1, 3) @ DIRECTIONS.T
+    return np.stack([reach.min(axis=0), reach.max(axis=0)]) if seen else np.zeros((0, len(limit())))
+
+
+def limit() -> np.ndarray:
+    return size_limits(widest_m=3.0, tallest_m=2.5)
+
+
+def lasting(paths: Paths, members: frozenset) -> range:
+    return range(min(paths[n][0] for n in members), max(paths[n][0] + len(paths[n][1]) for n in members))
+
+
+def may_be_one(paths: Paths, one: frozenset, other: frozenset, size: float) -> bool:
+    """Whether the union is too large once at the most, and neither strays about the other."""
+    outlines = [[outline(paths, members, frame) for frame in range(40)] for members in (one, other)]
+    shared = [(a, b) for a, b in zip(*outlines, strict=True) if len(a) and len(b)]
+    beyond = [(np.ptp(np.concatenate(both), axis=0) > limit()).any() for both in shared]
+    apart = [a.mean(axis=0) - b.mean(axis=0) for a, b in shared]
+    return sum(beyond) <= 1 and (not shared or np.ptp(apart, axis=0).max() <= 1.2 * max(size, 0.15))
+
+
+def naive_unions(paths: Paths, pairs: np.ndarray) -> np.ndarray:
+    """The same by sets of points, for so few paths that one pair is enough for every union."""
+    extent = {frozenset([number]): 0.0 for number in range(len(paths))}
+    for pair in pairs.T:
+        one, other = (next(members for members in extent if number in members) for number in pair)
+        if one == other:
             continue
-        members = np.flatnonzero((label == label[one]) | (label == label[other]))
-        halves = [np.flatnonzero(label == label[one]), np.flatnonzero(label == label[other])]
-        beyond = 0
-        for frame in range(40):
-            seen = [
-                [paths[n][1][frame - paths[n][0]] for n in half if 0 <= frame - paths[n][0] < len(paths[n][1])]
-                for half in halves
-            ]
-            if seen[0] and seen[1]:
-                reach = np.concatenate(seen) @ DIRECTIONS.T
-                beyond += bool((np.ptp(reach, axis=0) > limit).any())
-        if beyond <= 1:
-            label[members] = label[one]
-    return label
+        if len(lasting(paths, one)) < len(lasting(paths, other)):
+            one, other = other, one
+        size = max(extent[one], extent[other])
+        if may_be_one(paths, one, other, size):
+            del extent[one], extent[other]
+            outlines = [outline(paths, one | other, frame) for frame in lasting(paths, other)]
+            extent[one | other] = max(size, *(np.ptp(both, axis=0).max() for both in outlines if len(both)))
+    return np.array([next(min(members) for members in extent if n in members) for n in range(len(paths))])
 
 
 @given(seed=st.integers(0, 300))
+@few(max_examples=40)
 def test_unions_agree_with_a_naive_implementation(seed: int) -> None:
-    paths = random_paths(seed, count=9)
+    paths = random_paths(seed, count=7)
     made = trajectories_of(paths)
-    generator = np.random.default_rng(seed)
-    pairs = generator.integers(0, 9, (2, 25))
-    limit = size_limits(widest_m=3.0, tallest_m=2.5)
+    pairs = np.random.default_rng(seed).integers(0, 7, (2, 25))
     intervals = Intervals(made.first_frame, made.length, made.first_row)
-    found = united((pairs[0], pairs[1]), intervals, reaches(made.position), limit, 1)
-    assert same_partition(found, naive_unions(paths, (pairs[0], pairs[1]), limit))
+    found = united((pairs[0], pairs[1]), intervals, reaches(made.position), limit(), 1)
+    assert same_partition(found, naive_unions(paths, pairs))
 
 
 def test_neighbours_are_looked_for_where_something_moves() -> None:

@@ -187,7 +187,7 @@ def test_a_plate_that_moves_sideways_is_one_motion_that_goes_straight() -> None:
 
 
 def test_two_balls_apart_are_two_motions_and_never_linked() -> None:
-    surfaces = [sphere(lambda t: (-0.8, -0.6 + 0.04 * t, 3.0), 0.3), sphere(lambda t: (0.8, 0.6 - 0.04 * t, 3.0), 0.3)]
+    surfaces = [sphere(lambda t: (-0.8, -0.9 + 0.06 * t, 3.0), 0.3), sphere(lambda t: (0.8, 0.9 - 0.06 * t, 3.0), 0.3)]
     recording = recorded([*surfaces, plane(lambda _: 6.0)], frames=30, moving=[True, True, False])
     motions = solve(recording)
     assert_well_formed(motions, recording)

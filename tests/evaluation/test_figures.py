@@ -65,7 +65,7 @@ def solved(recording: Recording) -> Solved:
 @pytest.fixture(scope="module")
 def empty(recording: Recording) -> Solved:
     """The same, in which nothing was found."""
-    return Solved(recording=recording, motions=solve(recording, Settings(eps4=1e6)))
+    return Solved(recording=recording, motions=solve(recording, Settings(eps2=1e3)))
 
 
 def drawn(number: str, case: Solved, folder: Path) -> list[Path]:

@@ -127,6 +127,18 @@ def test_the_same_call_keeps_what_is_there_and_makes_the_rest(
     assert contents(tmp_path) == contents(made[0])
 
 
+def test_at_a_url_stands_the_same_and_what_is_there_is_kept(
+    made: tuple[Path, Generated], family: Path, tmp_path: Path
+) -> None:
+    order = Order(family=load_family(family), folder=f"file://{tmp_path}/set")
+    generate(order, seeds=[999])
+    assert generate(order, seeds=range(998, 1001)).kept == 1
+    assert contents(tmp_path / "set") == contents(made[0])
+    (tmp_path / "set" / "tiny-001000" / "recording.json").unlink()  # As if its making had been killed.
+    assert generate(order, seeds=range(998, 1001)).kept == 2
+    assert contents(tmp_path / "set") == contents(made[0])
+
+
 def test_other_seeds_join_the_manifest(family: Path, tmp_path: Path) -> None:
     for seed in (8, 3):
         generate(ordered(family, tmp_path), seeds=[seed])
