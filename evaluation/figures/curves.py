@@ -171,7 +171,7 @@ def _joined_trajectory(case: Solved) -> tuple[int, int, np.ndarray] | None:
     motions = case.motions
     for rows in np.split(np.arange(len(motions)), np.flatnonzero(np.diff(motions.trajectory)) + 1):
         filled = motions.source[rows] == INTRA
-        if motions.motion[rows[0]] == NOISE or filled[0] or filled[-1] or not filled.any():
+        if not len(rows) or motions.motion[rows[0]] == NOISE or filled[0] or filled[-1] or not filled.any():
             continue
         edges = np.flatnonzero(np.diff(filled.astype(int))).reshape(-1, 2)
         for first, last in zip(edges[:, 0], edges[:, 1] + 1, strict=True):

@@ -99,7 +99,8 @@ def random_prices(seed: int) -> tuple[Candidates, Standing, np.ndarray]:
     begin, end, weight = generator.uniform(0, 3, (3, 5))
     standing = Standing(begin=begin, end=end, weight=weight / 3)
     gain = price - np.minimum(weight[before], weight[after]) / 3 * (end[before] + begin[after])
-    return Candidates(before=before, after=after, price=price), standing, gain
+    calm = np.ones(len(before))
+    return Candidates(before=before, after=after, price=price, restlessness=calm), standing, gain
 
 
 def is_assignment(links: Links, chosen: np.ndarray) -> bool:
@@ -139,7 +140,9 @@ def test_margins_agree_with_their_definition(seed: int) -> None:
 def test_confidence_rises_with_the_margin() -> None:
     margin = np.array([-1e4, -5.0, 0.0, 5.0, 1e4])
     none = np.zeros(5, int)
-    sure = confidences(Links(before=none, after=none, chosen=margin > 0, margin=margin))
+    sure = confidences(
+        Links(before=none, after=none, chosen=margin > 0, margin=margin, restlessness=np.ones(len(margin)))
+    )
     assert (np.diff(sure) > 0).all()
     assert 0 <= sure[0] < 0.01
     assert 0.99 < sure[-1] <= 1

@@ -158,7 +158,7 @@ def test_twice_gives_the_same() -> None:
 def test_the_result_says_how_it_was_made() -> None:
     making = solved_crossing().making
     assert making.settings == Settings().model_dump()
-    stages = {"flow", "match", "trajectories", "affinity", "clustering", "completion", "total"}
+    stages = {"flow", "match", "trajectories", "clustering", "completion", "total"}
     assert stages <= set(making.seconds)
     assert making.seconds["total"] >= max(making.seconds[stage] for stage in stages - {"total"})
 
