@@ -115,8 +115,8 @@ def _clustered(affinity: sparse.csr_array, pieces: int, solver: Literal["amg", "
 def _legacy_randomness(seed: int) -> Iterator[None]:
     """NumPy's global random state set meanwhile, for pyamg draws from it, and put back afterwards."""
     before = np.random.get_state()  # noqa: NPY002 - pyamg knows no generator.
-    np.random.seed(seed)  # noqa: NPY002
+    np.random.seed(seed)  # noqa: NPY002 - the same: it draws from this state alone.
     try:
         yield
     finally:
-        np.random.set_state(before)  # noqa: NPY002
+        np.random.set_state(before)  # noqa: NPY002 - the caller's numbers go on as if nothing was drawn.

@@ -137,7 +137,7 @@ def test_the_global_random_state_is_left_as_it_was_and_does_not_matter() -> None
     graph = blobs([40, 60, 80], 0.5)
     np.random.seed(1)  # noqa: NPY002 - what pyamg draws from is what is tested.
     one = by_eigengap(graph)
-    drawn = np.random.random()  # noqa: NPY002
-    np.random.seed(1)  # noqa: NPY002
-    assert np.random.random() == drawn  # noqa: NPY002
+    drawn = np.random.random()  # noqa: NPY002 - the same.
+    np.random.seed(1)  # noqa: NPY002 - the same.
+    assert np.random.random() == drawn  # noqa: NPY002 - the same.
     np.testing.assert_array_equal(by_eigengap(graph), one)
