@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 from scipy.spatial import cKDTree
 
-from algorithm.outlines import HORIZONTAL, size_limits
+from algorithm.outlines import HORIZONTAL, SMALLEST_M, size_limits
 from algorithm.segment_frames import SegmentFrames
 from algorithm.settings import Settings
 
@@ -116,7 +116,7 @@ def _costs(
     beside = _beside(rows, met, frames, fps)
     gap = _medians(gaps(rows, met), met.start, frames)
     extent = _extents(rows, met)
-    size = np.minimum(1.0, extent / _FULL_SIZE_M)
+    size = np.clip(extent, SMALLEST_M, _FULL_SIZE_M) / _FULL_SIZE_M
     slow = beside.speed <= settings.companion_speed_m_per_s
     near = (gap <= size * settings.companion_gap_m) & (beside.stray <= size * settings.companion_stray_m)
     near &= slow | (beside.stray_3d <= _STRAY * extent)

@@ -141,7 +141,7 @@ def _price(pair: tuple[SegmentFrames, SegmentFrames], restlessness: float, fps: 
 def _difference(one: SegmentFrames, other: SegmentFrames) -> float:
     """The price of two looks: of the heights that bodies reach up to, or of the areas of what is small.
 
-    Heights say nothing where one shows less of itself than the other.
+    Heights say nothing where one shows less of itself than the other, and little where they are unsteady.
     """
     areas = full_area(one), full_area(other)
     ratio = max(areas) / min(areas)
@@ -149,11 +149,10 @@ def _difference(one: SegmentFrames, other: SegmentFrames) -> float:
         return float(_UNLIKE_PRICE * max(np.log(ratio / _AS_LARGE), 0.0))
     if ratio > _AS_LARGE:
         return 0.0
-    tops = [
-        float(np.median(rows.high[rows.area >= _SEEN * area, -1]))
-        for rows, area in zip((one, other), areas, strict=True)
-    ]
-    return float(2.5 * np.log1p((tops[0] - tops[1]) ** 2 / (4 * _HEIGHT_M**2)))
+    tops = [rows.high[rows.area >= _SEEN * area, -1] for rows, area in zip((one, other), areas, strict=True)]
+    middle = [float(np.median(top)) for top in tops]
+    unsteady = sum(float(np.mean(np.abs(top - usual))) ** 2 for top, usual in zip(tops, middle, strict=True))
+    return float(2.5 * np.log1p((middle[0] - middle[1]) ** 2 / (4 * _HEIGHT_M**2 + unsteady)))
 
 
 def _extent(one: SegmentFrames) -> float:

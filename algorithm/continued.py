@@ -71,23 +71,35 @@ def links_between(
     rows: SegmentFrames, followed: Followed, settings: Settings
 ) -> tuple[tuple[Link, ...], tuple[Link, ...]]:
     """The links of the likeliest assignment (step 9), and those that might stand in their place."""
-    main = np.flatnonzero(~is_scrap(rows, settings))
-    name = np.full(rows.count, -1)
-    name[main] = np.arange(len(main))
-    known = rows.renamed(name)
+    flown = flights(rows, (), fps=followed.fps)
+    whole = _joined([(link.before, link.after) for link in flown], rows.count)
+    known, first, last = _ends(rows, whole, settings)
     possible = candidates(known, settings, fps=followed.fps)
     standing = standings(known, followed.camera, settings, frames=followed.frames, fps=followed.fps)
     found = linked(possible, standing)
     confidence = confidences(found)
     every = [
-        Link(before=int(main[before]), after=int(main[after]), confidence=float(sure), chosen=bool(chosen))
+        Link(before=int(last[before]), after=int(first[after]), confidence=float(sure), chosen=bool(chosen))
         for before, after, sure, chosen in zip(found.before, found.after, confidence, found.chosen, strict=True)
     ]
     made = tuple(link for link in every if link.chosen)
-    flown = flights(rows, made, fps=followed.fps)
-    told = {(link.before, link.after) for link in flown}
-    others = [link for link in every if not link.chosen and link.confidence >= _WORTH_KEEPING]
-    return (*made, *flown), tuple(link for link in others if (link.before, link.after) not in told)
+    return (*made, *flown), tuple(link for link in every if not link.chosen and link.confidence >= _WORTH_KEEPING)
+
+
+def _ends(
+    rows: SegmentFrames, whole: Int[np.ndarray, "segment"], settings: Settings
+) -> tuple[SegmentFrames, Int[np.ndarray, "known"], Int[np.ndarray, "known"]]:
+    """What can be linked, the segments that are one flight as one; and the first and the last segment of each."""
+    whole_rows = rows.renamed(whole)
+    main = np.flatnonzero(~is_scrap(whole_rows, settings))
+    name = np.full(whole_rows.count, -1)
+    name[main] = np.arange(len(main))
+    begin = np.array([one.frame[0] for one in rows.singles()], int)
+    order = np.argsort(begin, kind="stable")
+    last, first = np.zeros(whole_rows.count, int), np.zeros(whole_rows.count, int)
+    last[whole[order]] = order
+    first[whole[order[::-1]]] = order[::-1]
+    return whole_rows.renamed(name), first[main], last[main]
 
 
 def _rows(followed: Followed, segments: Segments) -> SegmentFrames:

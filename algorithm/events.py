@@ -41,26 +41,43 @@ _FREE = -1
 class Thing:
     """The points of a motion, frame by frame."""
 
+    trajectories: Trajectories
+    """Everybody's."""
     first: int
-    points: tuple[Float[np.ndarray, "_ 3"], ...]
-    """World axes, metres; none where nothing is seen."""
-    steps: tuple[Float[np.ndarray, "_ 3"], ...]
-    """Displacements to the next frame; NaN where a point is not followed."""
+    rows: tuple[Int[np.ndarray, "_"], ...]
+    """Its own of them in each frame from the first on."""
     extent: float
     """Median over frames of the largest extent, metres."""
+    low: Float[np.ndarray, "3"]
+    """Corner of the box that it never leaves, metres."""
+    high: Float[np.ndarray, "3"]
 
     @property
     def last(self) -> int:
         """The last frame with a point."""
-        return self.first + len(self.points) - 1
+        return self.first + len(self.rows) - 1
 
     def at(self, frame: int) -> Float[np.ndarray, "point 3"]:
-        """Its points in any frame."""
-        return self.points[frame - self.first] if self.first <= frame <= self.last else np.zeros((0, 3))
+        """Its points in any frame, world axes, metres; none where nothing is seen."""
+        inside = self.first <= frame <= self.last
+        return self.trajectories.position[self.rows[frame - self.first]] if inside else np.zeros((0, 3))
+
+    def steps(self, frame: int) -> Float[np.ndarray, "point 3"]:
+        """Their displacements from a frame with points to the next; NaN where a point is not followed."""
+        number, position = self.trajectories.trajectory, self.trajectories.position
+        rows = self.rows[frame - self.first]
+        onward = np.minimum(rows + 1, len(number) - 1)
+        goes_on = (onward > rows) & (number[onward] == number[rows])
+        return np.where(goes_on[:, None], position[onward] - position[rows], np.nan)
 
     def step(self, frame: int) -> Float[np.ndarray, "3"]:
         """Its mean displacement from a frame with points to the next; NaN where nothing is followed."""
-        return _mean(self.steps[frame - self.first])
+        return _mean(self.steps(frame))
+
+    def may_touch(self, other: "Thing") -> bool:
+        """Whether it could be in touch with the other one for all that their boxes say, or would be a frame later."""
+        reach = _TOUCH_M + self.high - self.low
+        return bool(np.all((self.low - reach <= other.high) & (other.low <= self.high + reach)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,15 +106,9 @@ class Contact:
 
 def things(trajectories: Trajectories, motion: Int[np.ndarray, "trajectory"]) -> tuple[Thing, ...]:
     """The points of every motion; trajectories of motion -1 are nobody's."""
-    onward = np.zeros((len(trajectories.frame), 3))
-    onward[:-1] = np.diff(trajectories.position, axis=0)
-    ends = np.flatnonzero(np.diff(trajectories.trajectory, append=-1) != 0)
-    onward[ends] = np.nan
-    label = motion[trajectories.trajectory] if trajectories.count else np.zeros(0, int)
-    return tuple(
-        _thing(trajectories.frame[rows], trajectories.position[rows], onward[rows])
-        for rows in (np.flatnonzero(label == number) for number in range(int(motion.max(initial=-1)) + 1))
-    )
+    order = np.argsort(motion, kind="stable")
+    bounds = np.searchsorted(motion[order], np.arange(int(motion.max(initial=-1)) + 2)).tolist()
+    return tuple(_thing(trajectories, order[begin:end]) for begin, end in pairwise(bounds))
 
 
 def events_between(every: Sequence[Thing], clock: Clock) -> tuple[Event, ...]:
@@ -118,17 +129,23 @@ def events_between(every: Sequence[Thing], clock: Clock) -> tuple[Event, ...]:
     return tuple(sorted(found, key=lambda event: event.frame))
 
 
-def _thing(frame: np.ndarray, position: np.ndarray, onward: np.ndarray) -> Thing:
+def _thing(trajectories: Trajectories, members: Int[np.ndarray, "member"]) -> Thing:
+    length = trajectories.length[members]
+    begin = trajectories.first_row[members] - (np.cumsum(length) - length)
+    rows = (np.arange(length.sum()) + np.repeat(begin, length)).astype(np.int32)
+    frame, position = trajectories.frame[rows], trajectories.position[rows]
     order = np.argsort(frame, kind="stable")
     first = int(frame.min())
     bounds = np.searchsorted(frame[order], np.arange(first, int(frame.max()) + 2)).tolist()
     parts = [order[begin:end] for begin, end in pairwise(bounds)]
     extents = [np.ptp(position[part], axis=0).max() for part in parts if len(part)]
     return Thing(
+        trajectories=trajectories,
         first=first,
-        points=tuple(position[part] for part in parts),
-        steps=tuple(onward[part] for part in parts),
+        rows=tuple(rows[part] for part in parts),
         extent=float(np.median(extents)),
+        low=position.min(axis=0),
+        high=position.max(axis=0),
     )
 
 
@@ -138,7 +155,10 @@ def _events(number: int, every: Sequence[Thing], clock: Clock) -> Iterator[Event
     larger = [
         other
         for other, holder in enumerate(every)
-        if thing.extent <= _SHARE * holder.extent and holder.first <= thing.last + 1 and holder.last >= thing.first - 1
+        if thing.extent <= _SHARE * holder.extent
+        and holder.first <= thing.last + 1
+        and holder.last >= thing.first - 1
+        and thing.may_touch(holder)
     ]
     for stretch in _stretches(thing, clock.lasting(_HOLE_SECONDS)) if larger else []:
         contacts = [_contact(thing, every[other], stretch, clock) for other in larger]
@@ -157,7 +177,7 @@ def _events(number: int, every: Sequence[Thing], clock: Clock) -> Iterator[Event
 
 def _stretches(thing: Thing, hole: int) -> list[Int[np.ndarray, "moment"]]:
     """The frames with points, parted where more than `hole` frames in a row have none."""
-    seen = thing.first + np.flatnonzero([len(points) > 0 for points in thing.points])
+    seen = thing.first + np.flatnonzero([len(rows) > 0 for rows in thing.rows])
     return np.split(seen, np.flatnonzero(np.diff(seen) > hole + 1) + 1)
 
 
@@ -173,7 +193,7 @@ def _contact(thing: Thing, holder: Thing, stretch: Int[np.ndarray, "moment"], cl
         onward[moment] = np.nan_to_num(holder.step(frame))
         next_to = distance <= _NEXT_M
         if next_to.any():
-            drift[moment] = thing.step(frame) - _mean(holder.steps[frame - holder.first][next_to])
+            drift[moment] = thing.step(frame) - _mean(holder.steps(frame)[next_to])
     span = clock.lasting(_SPEED_SECONDS)
     speed = [np.linalg.norm(_mean(drift[max(0, m - span) : m + span])) for m in range(len(stretch))]
     centre = np.array([thing.at(frame).mean(axis=0) for frame in stretch.tolist()])

@@ -16,12 +16,16 @@ _GRAVITY_M_PER_S2 = np.array([0.0, 0.0, -9.81])
 _LARGEST_M = 0.5
 """Of what is thrown; in any direction."""
 _SLOWEST_M_PER_S = 1.5
-"""Faster than this it goes all the time."""
+"""Faster than this it goes all the time ..."""
+_FALLS = 3.0
+"""... or else a straight line misses it so many times farther than the parabola: near its top it is slow, but falls."""
 _MISS_M = 0.06
 """How far the centre of what is seen lies off the parabola at most (root mean square): half a ball may be hidden."""
 _LEAST_FRAMES = 3
 _LONGEST_SECONDS = 0.4
 """In so short a hole no other ball takes the same way."""
+_END_SECONDS = 0.2
+"""What is seen beside the hole for so long counts: before, it may have lain in a hand."""
 _CONFIDENCE = 0.95
 """Of a link that free fall makes."""
 
@@ -30,7 +34,8 @@ def flights(rows: SegmentFrames, links: Iterable[Link], *, fps: float) -> tuple[
     """The links between segments that are one free fall, such as `links` leave alone on these sides; short holes first.
 
     Both are no larger than half a metre and are seen in three frames at least, one after the other and at most
-    0.4 s apart, and the parabola through both misses their centres by at most 6 cm, at 1.5 m/s or more.
+    0.4 s apart, and the parabola through what is seen of both 0.2 s before and after the hole misses their centres by
+    at most 6 cm, at 1.5 m/s or more all the time or three times less than a straight line.
     """
     before = {link.before for link in links}
     after = {link.after for link in links}
@@ -56,15 +61,25 @@ def _may_fly(one: SegmentFrames) -> bool:
 
 
 def _miss_m(one: SegmentFrames, other: SegmentFrames, fps: float) -> float:
-    """How far the free fall nearest to both misses their centres, metres; infinite where it is too slow for one."""
+    """How far the free fall nearest to both ends misses their centres, metres; infinite where they show none."""
+    span = round(_END_SECONDS * fps)
+    one = one.part(slice(int(np.searchsorted(one.frame, one.frame[-1] - span)), None))
+    other = other.part(slice(0, int(np.searchsorted(other.frame, other.frame[0] + span, side="right"))))
     time = (np.concatenate([one.frame, other.frame]) - one.frame[-1]) / fps
     place = np.concatenate([one.centre, other.centre])
-    weightless = place - 0.5 * _GRAVITY_M_PER_S2 * time[:, None] ** 2
-    straight = np.stack([np.ones_like(time), time], axis=1)
-    start, *_ = np.linalg.lstsq(straight, weightless, rcond=None)
-    if _slowest(start[1], time) < _SLOWEST_M_PER_S:
-        return np.inf
-    return float(np.sqrt(np.mean(np.sum((weightless - straight @ start) ** 2, axis=1))))
+    falling, begin = _miss_and_begin(place - 0.5 * _GRAVITY_M_PER_S2 * time[:, None] ** 2, time)
+    straight, _ = _miss_and_begin(place, time)
+    flies = _slowest(begin, time) >= _SLOWEST_M_PER_S or straight >= _FALLS * falling
+    return falling if flies else np.inf
+
+
+def _miss_and_begin(
+    place: Float[np.ndarray, "moment 3"], time: Float[np.ndarray, "moment"]
+) -> tuple[float, Float[np.ndarray, "3"]]:
+    """How far the nearest straight line, at an even speed, misses the places (root mean square), and its velocity."""
+    line = np.stack([np.ones_like(time), time], axis=1)
+    start, *_ = np.linalg.lstsq(line, place, rcond=None)
+    return float(np.sqrt(np.mean(np.sum((place - line @ start) ** 2, axis=1)))), start[1]
 
 
 def _slowest(begin: Float[np.ndarray, "3"], time: Float[np.ndarray, "moment"]) -> float:

@@ -25,6 +25,8 @@ _TRUST_SECONDS = 0.17
 """Pairs that are together for this time count half as good as such that always are."""
 _LEAST_FRAMES = 3
 """Common frames that say anything of a pair."""
+_PAIRS_AT_ONCE = 500_000
+"""Bounds the memory."""
 _MOMENTS_TOO_LARGE = 1
 """Moments in which a union may be too large all the same: one bad match shall not part a body."""
 
@@ -39,18 +41,20 @@ def groups(trajectories: Trajectories, settings: Settings, *, fps: float) -> Int
         return np.zeros(0, int)
     stride = max(1, round(_MOMENT_SECONDS * fps))
     moments = _moments(trajectories, stride)
-    pairs = neighbour_pairs(moments, neighbours=settings.neighbours, radius_m=settings.neighbour_radius_m)
-    separation = separations(trajectories, pairs, fps=fps, loosest_m=settings.loosest_m)
-    order = np.argsort(separation, kind="stable")[: int(np.isfinite(separation).sum())]
+    pairs = _in_order(trajectories, moments, settings, fps)
+    intervals, reach = _intervals(moments, trajectories.count, stride), reaches(moments.position)
+    del moments  # Of many trajectories they are large, and what follows needs room.
     limit = size_limits(widest_m=settings.widest_m, tallest_m=settings.tallest_m)
-    root = united(
-        (pairs[0][order], pairs[1][order]),
-        _intervals(moments, trajectories.count, stride),
-        reaches(moments.position),
-        limit,
-        _MOMENTS_TOO_LARGE,
-    )
+    root = united(pairs, intervals, reach, limit, _MOMENTS_TOO_LARGE)
     return np.unique(root, return_inverse=True)[1]
+
+
+def _in_order(trajectories: Trajectories, moments: Trajectories, settings: Settings, fps: float) -> IndexPairs:
+    """The pairs of neighbours, those first that keep together best; without those that do not."""
+    one, other = neighbour_pairs(moments, neighbours=settings.neighbours, radius_m=settings.neighbour_radius_m)
+    separation = separations(trajectories, (one, other), fps=fps, loosest_m=settings.loosest_m)
+    order = np.argsort(separation, kind="stable")[: int(np.isfinite(separation).sum())]
+    return one[order], other[order]
 
 
 def separations(
@@ -61,15 +65,14 @@ def separations(
     (largest distance + 0.17 s * largest relative speed) * (1 + 0.17 s / time together). Infinite where that is
     above `loosest_m` or fewer than three frames are common.
     """
-    together = _together(
-        pairs,
-        Intervals(trajectories.first_frame, trajectories.length, trajectories.first_row),
-        trajectories.position,
-        max(1, round(_LAG_SECONDS * fps)),
-    )
-    frames, distance, speed = together.T
-    separation = (distance + _SPEED_SECONDS * fps * speed) * (1.0 + _TRUST_SECONDS * fps / np.maximum(frames, 1.0))
-    return np.where((frames >= _LEAST_FRAMES) & (separation <= loosest_m), separation, np.inf)
+    lasting = Intervals(trajectories.first_frame, trajectories.length, trajectories.first_row)
+    lag, found = max(1, round(_LAG_SECONDS * fps)), np.empty(len(pairs[0]))
+    for begin in range(0, len(found), _PAIRS_AT_ONCE):
+        part = slice(begin, begin + _PAIRS_AT_ONCE)
+        frames, distance, speed = _together((pairs[0][part], pairs[1][part]), lasting, trajectories.position, lag).T
+        separation = (distance + _SPEED_SECONDS * fps * speed) * (1.0 + _TRUST_SECONDS * fps / np.maximum(frames, 1.0))
+        found[part] = np.where((frames >= _LEAST_FRAMES) & (separation <= loosest_m), separation, np.inf)
+    return found
 
 
 def _moments(trajectories: Trajectories, stride: int) -> Trajectories:
@@ -79,7 +82,7 @@ def _moments(trajectories: Trajectories, stride: int) -> Trajectories:
         trajectory=trajectories.trajectory[rows],
         frame=trajectories.frame[rows],
         position=trajectories.position[rows],
-        column_row=trajectories.column_row[rows],
+        column_row=np.broadcast_to(np.nan, (int(rows.sum()), 2)),  # Nobody asks where in the picture they were.
     )
 
 

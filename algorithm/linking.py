@@ -26,7 +26,7 @@ _SURE = 2.8, 0.11, 1.3
 """Of the logistic curve from margin and restlessness to confidence, fitted on development recordings."""
 _RIVAL = 0.5
 """How fast the confidence of what was not chosen falls with what it would cost."""
-_LONG_SECONDS, _MANY = 0.3, 10.0
+_LONG_SECONDS, _MANY = 0.5, 20.0
 """A segment that is seen for so long, with so many points a frame, has its full weight."""
 _FEWEST = 3.0
 """Points a frame; with fewer a segment links nothing."""

@@ -8,9 +8,13 @@ from jaxtyping import Float, Float32, Int
 
 from algorithm.compiled import compiled
 
+_POINTS_AT_ONCE = 1_000_000
+"""Bounds the memory."""
 _MEMBERS_A_PAIR = 4
-_STRAY, _SMALLEST_M = 1.2, 0.15
-"""Parts of a body stray about one another by this share of its extent, or of so small a body's."""
+SMALLEST_M = 0.15
+"""What is smaller counts as so large when it strays: a ball turns, and shows now this half of it and now that."""
+_STRAY = 1.2
+"""Parts of a body stray about one another by this share of its extent."""
 _HORIZONTALS = 4
 _ANGLES = np.arange(_HORIZONTALS) * np.pi / _HORIZONTALS
 DIRECTIONS: Float[np.ndarray, "direction 3"] = np.concatenate(
@@ -30,7 +34,11 @@ def size_limits(*, widest_m: float, tallest_m: float) -> Float32[np.ndarray, "di
 
 def reaches(position: Float[np.ndarray, "point 3"]) -> Float32[np.ndarray, "point direction"]:
     """How far points lie along `DIRECTIONS`, metres."""
-    return (position @ DIRECTIONS.T).astype(np.float32)
+    found = np.empty((len(position), len(DIRECTIONS)), np.float32)
+    for begin in range(0, len(position), _POINTS_AT_ONCE):
+        part = slice(begin, begin + _POINTS_AT_ONCE)
+        found[part] = position[part] @ DIRECTIONS.T
+    return found
 
 
 class Intervals(NamedTuple):
@@ -141,7 +149,7 @@ def _astray(low: np.ndarray, high: np.ndarray, rows: tuple[int, int], shared: tu
             apart = low[one, direction] + high[one, direction] - low[other, direction] - high[other, direction]
             if np.isfinite(apart):
                 least, most = min(least, apart / 2), max(most, apart / 2)
-        if most - least > _STRAY * max(size, _SMALLEST_M):
+        if most - least > _STRAY * max(size, SMALLEST_M):
             return True
     return False
 

@@ -36,8 +36,8 @@ def patches(
 
     `moving` are the frames' depths, NaN where nothing moves. Pixels without a point within `reach_m` count nowhere.
     """
-    count = np.zeros(len(trajectories.frame))
-    total = np.zeros((len(trajectories.frame), 3))
+    pixels = np.zeros(len(trajectories.frame), np.float32)
+    centre = trajectories.position.copy()
     order = np.argsort(trajectories.frame, kind="stable")
     bounds = np.searchsorted(trajectories.frame[order], np.arange(len(moving) + 1))
     grid = pixel_grid(camera.height, camera.width)
@@ -50,7 +50,9 @@ def patches(
         distance, nearest = cKDTree(trajectories.position[rows]).query(place, distance_upper_bound=reach_m)
         near = np.isfinite(distance)
         part = nearest[near]
-        count[rows] = np.bincount(part, minlength=len(rows))
-        total[rows] = np.stack([np.bincount(part, place[near, axis], len(rows)) for axis in range(3)], axis=1)
-    centre = np.where(count[:, None] > 0, total / np.maximum(count, 1.0)[:, None], trajectories.position)
-    return Patches(pixels=count, centre=centre)
+        count = np.bincount(part, minlength=len(rows))
+        total = np.stack([np.bincount(part, place[near, axis], len(rows)) for axis in range(3)], axis=1)
+        shown = count > 0
+        pixels[rows] = count
+        centre[rows[shown]] = total[shown] / count[shown, None]
+    return Patches(pixels=pixels, centre=centre)

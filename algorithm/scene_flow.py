@@ -5,6 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
 
+import cv2
 import numpy as np
 from jaxtyping import Float32, UInt8
 
@@ -92,8 +93,11 @@ def _lifted_flows(footage: Footage, settings: Settings, flow: FlowBetween) -> Fl
 
 
 def _at_once(flow: Callable[[int, int], SceneFlow]) -> ThereAndBack:
-    """The flows from 0 to 1 and from 1 to 0, in two threads."""
-    with ThreadPoolExecutor(2) as threads:
+    """The flows from 0 to 1 and from 1 to 0, in two threads; in one where OpenCV may have no more.
+
+    (`OPENCV_FOR_THREADS_NUM=1`.) So workers that share the cores among them keep to one thread each.
+    """
+    with ThreadPoolExecutor(2 if cv2.getNumThreads() > 1 else 1) as threads:
         forward, backward = threads.map(flow, (0, 1), (1, 0))
     return forward, backward
 

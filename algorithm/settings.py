@@ -46,7 +46,7 @@ class Settings(Frozen):
 
     chaining: ChainingName = "between_pixels"
     """How matches become trajectories: from pixel to pixel (`pixels`, paper), or keeping the place between them."""
-    jolt_m_per_s2: Positive = 45.0
+    jolt_m_per_s2: Positive = 100.0
     """Metres a second squared: a point whose motion changes more abruptly is lost (for `between_pixels`)."""
     eps1: Positive = 1.5
     """Point spacings: a match returns home within this distance (paper: epsilon 1)."""
@@ -71,8 +71,8 @@ class Settings(Frozen):
     """Metres: no body is wider than this in any horizontal direction; an honest prior for people (paper: none)."""
     slimmest_m: Positive = 0.8
     """Metres: seen from some side every body is as slim as this; two people in step are not (paper: none)."""
-    tallest_m: Positive = 2.1
-    """Metres: no body is taller than this (paper: none)."""
+    tallest_m: Positive = 2.2
+    """Metres: no body is taller than this, with an umbrella up (paper: none)."""
     eps3: Positive = 10.0
     """traj_sim: pairs beyond it are ignored (paper: epsilon 3; not for `common_fate`)."""
     eps5: Count = 10

@@ -3,8 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
-from jaxtyping import Bool, Float32
+from jaxtyping import Bool, Float32, Int
 
 _FRAMES_FOR_MEDIAN = 61
 _WOBBLE_M = 0.15
@@ -14,11 +15,20 @@ _SPREADS = 3.0
 """A return within so many standard deviations of its pixel's usual depth stands still ..."""
 _WIDEST_M = 0.3
 """... but none that is farther from it than this, metres."""
-_USUAL_SHARE, _BEYOND_USUAL = 0.6, 4.0
-"""So large a share of the pixels shows what noise is usual; a pixel that scatters this much more sees things move."""
+_USUAL_SHARE, _BEYOND_USUAL = 0.3, 4.0
+"""So large a share of the pixels scatters less than is usual, for in most of them things may move; and a pixel that
+scatters this much more than usual sees things move."""
+_SECOND = np.float32(np.sqrt(6.0))
+"""Standard deviations of noise in its second difference, a - 2 b + c."""
 _LEAST_PRESENCE = 0.25
-"""What stands still is seen in so large a share of the frames. A ball that is juggled before nothing comes back to
-its pixels at the same depth, and to most of them for less."""
+"""What stands still is seen in so large a share of the frames ..."""
+_OPEN_SHARE = 0.6
+"""... and in so large a share of those in which nothing nearer hides it: a ball that is juggled before nothing comes
+back to its pixels at the same depth, but it is away in between ..."""
+_FLICKER = 0.8
+"""... or else it comes and goes from frame to frame at least this much as often as at random, as faint returns do. A
+ball stays for some frames and stays away for some: .1 to .7; of the returns of a far floor 98 % are above .82."""
+_AROUND_PX = (5, 5)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -54,33 +64,57 @@ def background(depths: Sequence[Float32[np.ndarray, "row column"]], *, tolerance
     A pixel's usual depth is the median of its returns, less each frame's wobble: else pixels that were
     hidden in other frames would take their depth from other shifts. It is background if at least half of
     the returns agree with it, in at least a quarter of the frames, over at least half of the recording's time:
-    someone who passes agrees with himself for a moment only, and what is juggled is gone between two throws.
+    someone who passes agrees with himself for a moment only. What is juggled before nothing is gone between two
+    throws: so where nothing nearer hides it, the background is seen most of the time, or flickers.
     """
     same = np.full(depths[0].shape, tolerance_m, np.float32)
     rough = Background(depth=usual_depth(depths), tolerance_m=same)
     level = [depth - np.float32(rough.wobble(depth)) for depth in depths]
     usual = usual_depth(level)
     tolerance = np.clip(_SPREADS * noise_of_pixels(level, usual), tolerance_m, max(_WIDEST_M, tolerance_m))
-    first = np.full(usual.shape, len(depths))
-    last = np.full(usual.shape, -1)
-    agreeing = np.zeros(usual.shape, int)
-    returns = np.zeros(usual.shape, int)
-    whole = Background(depth=usual, tolerance_m=tolerance)
-    for number, depth in enumerate(depths):
-        seen = np.isfinite(depth)
-        agrees = seen & ~whole.moving(depth)
-        returns += seen
-        agreeing += agrees
-        first = np.where(agrees, np.minimum(first, number), first)
-        last = np.where(agrees, number, last)
-    often = (agreeing >= returns / 2) & (agreeing >= len(depths) * _LEAST_PRESENCE) & (agreeing >= 2)
-    lasting = often & (last - first + 1 >= len(depths) / 2)
-    return Background(depth=np.where(lasting, usual, np.float32(np.nan)), tolerance_m=tolerance)
+    still = _stands_still(level, Background(depth=usual, tolerance_m=tolerance))
+    return Background(depth=np.where(still, usual, np.float32(np.nan)), tolerance_m=tolerance)
+
+
+def _stands_still(
+    depths: Sequence[Float32[np.ndarray, "row column"]], usual: Background
+) -> Bool[np.ndarray, "row column"]:
+    """The pixels whose usual depth belongs to something that stands still."""
+    seen = np.stack([np.isfinite(depth) for depth in depths])
+    agrees = seen & ~np.stack([usual.moving(depth) for depth in depths])
+    nearer = np.stack([depth < usual.depth - usual.tolerance_m for depth in depths])  # Nothing is not nearer.
+    visible = agrees | ~nearer
+    times = agrees.sum(axis=0)
+    often = (times >= seen.sum(axis=0) / 2) & (times >= len(depths) * _LEAST_PRESENCE) & (times >= 2)
+    lasting = _time_from_first_to_last(agrees) >= len(depths) / 2
+    stays = times >= _OPEN_SHARE * visible.sum(axis=0)
+    return often & lasting & (stays | _flickers(agrees, visible))
+
+
+def _flickers(
+    agrees: Bool[np.ndarray, "frame row column"], visible: Bool[np.ndarray, "frame row column"]
+) -> Bool[np.ndarray, "row column"]:
+    """Where what is seen in some of the frames in which it might be changes from frame to frame as if at random.
+
+    At random it changes in 2 p (1 - p) of the pairs of consecutive frames, where p is the share in which it is seen.
+    Changes are counted over 5x5 pixels, for in a second one pixel says too little.
+    """
+    share = agrees.sum(axis=0) / np.maximum(visible.sum(axis=0), 1)
+    pairs = visible[1:] & visible[:-1]
+    changes = ((agrees[1:] != agrees[:-1]) & pairs).sum(axis=0, dtype=np.float64)
+    at_random = 2 * share * (1 - share) * pairs.sum(axis=0)
+    around, around_at_random = (cv2.boxFilter(each, -1, _AROUND_PX) for each in (changes, at_random))
+    return np.asarray(around >= _FLICKER * around_at_random)
+
+
+def _time_from_first_to_last(agrees: Bool[np.ndarray, "frame row column"]) -> Int[np.ndarray, "row column"]:
+    """The frames from the first to the last in which a pixel agrees; all of them where none does."""
+    return len(agrees) - np.argmax(agrees, axis=0) - np.argmax(agrees[::-1], axis=0)
 
 
 def usual_depth(depths: Sequence[Float32[np.ndarray, "row column"]]) -> Float32[np.ndarray, "row column"]:
     """The median of every pixel's returns over up to 61 frames spread over the recording; NaN without any."""
-    return _quantile(np.stack([depths[number] for number in _spread_frames(len(depths))]), 0.5)
+    return _quantile(np.stack([depths[number] for number in _spread(len(depths))]), 0.5)
 
 
 def noise_of_pixels(
@@ -88,26 +122,32 @@ def noise_of_pixels(
 ) -> Float32[np.ndarray, "row column"]:
     """The standard deviation of every pixel's returns that is noise, metres; NaN where the usual depth is.
 
-    It is their spread about the usual depth, but not more than four times what is usual in the recording at that
-    depth, with noise that grows as depth squared: where arms and balls go by, returns scatter without noise.
+    It is what scatters from frame to frame, but not more than four times what is usual in the recording at that depth,
+    with noise that grows as depth squared: where arms and balls go by, returns scatter without noise.
     """
     known = np.isfinite(usual)
     if not known.any():
         return usual
-    spread = usual_spread(depths, usual)
+    spread = np.where(known, noise_in_time(depths), np.float32(np.nan))
     usual_noise = np.quantile((spread / usual**2)[known], _USUAL_SHARE) * usual**2
     return np.minimum(spread, np.float32(_BEYOND_USUAL) * usual_noise).astype(np.float32)
 
 
-def usual_spread(
-    depths: Sequence[Float32[np.ndarray, "row column"]], usual: Float32[np.ndarray, "row column"]
-) -> Float32[np.ndarray, "row column"]:
-    """The standard deviation of every pixel's returns about its usual depth, by three quarters; 0 without any."""
-    off = np.stack([np.abs(depths[number] - usual) for number in _spread_frames(len(depths))])
-    return np.nan_to_num(_quantile(off, _SHARE) / np.float32(_SIGMAS))
+def noise_in_time(depths: Sequence[Float32[np.ndarray, "row column"]]) -> Float32[np.ndarray, "row column"]:
+    """The standard deviation of every pixel's second differences in time, by three quarters; 0 without any.
+
+    The spread about the usual depth would be no noise where somebody walks by: before nothing, each pixel sees a body
+    of 20 cm and nothing else. From frame to frame its surface passes evenly, and second differences leave that out.
+    """
+    if len(depths) < 3:
+        return np.zeros(depths[0].shape, np.float32)
+    bends = [
+        np.abs(depths[number] - 2 * depths[number + 1] + depths[number + 2]) for number in _spread(len(depths) - 2)
+    ]
+    return np.nan_to_num(_quantile(np.stack(bends), _SHARE) / np.float32(_SIGMAS * _SECOND))
 
 
-def _spread_frames(count: int) -> list[int]:
+def _spread(count: int) -> list[int]:
     return np.unique(np.linspace(0, count - 1, _FRAMES_FOR_MEDIAN).round().astype(int)).tolist()
 
 

@@ -24,6 +24,11 @@ _LITTLE = 0.3
 """A straggler shows at most this share of what its host shows when all of it is seen."""
 _USUAL = 10, 90
 """Percentiles of a body's reach from its path that make its outline."""
+_SWING, _LIMB = 0.15, 2.0
+"""What strays about its mean place beside the host by at most this share of the host's extent, as a limb that swings
+does, may be so many times as fast ..."""
+_BODY_M = 1.2
+"""... if the host is as large as a body: balls are juggled about hands."""
 _AHEAD_SECONDS = 0.3
 """A path is drawn out so far beyond its ends."""
 
@@ -46,8 +51,8 @@ def gathered(rows: SegmentFrames, settings: Settings, *, fps: float) -> Int[np.n
     """The motion that each motion belongs to, itself if it is none's straggler; names are not made anew.
 
     The rows are those of motions. Motion m is a straggler of h if it shows little beside h, in 70 % of its frames lies
-    in h's outline, carried along h's path, and moves with it as companions do; of several the one whose path it keeps
-    nearest to.
+    in h's outline, carried along h's path, and moves with it as companions do, or as a limb that swings; of several the
+    one whose path it keeps nearest to. The outline reaches as far up and down as h ever does: feet show now and then.
     """
     ones = rows.singles()
     hosts = [_host(one, settings, fps) for one in ones]
@@ -89,6 +94,7 @@ def _host(one: SegmentFrames, settings: Settings, fps: float) -> Host:
     along = reaches(curve.position[one.frame - curve.first])
     low = np.percentile(one.low - along, _USUAL[0], axis=0)
     high = np.percentile(one.high - along, _USUAL[1], axis=0)
+    low[-1], high[-1] = (one.low - along)[:, -1].min(), (one.high - along)[:, -1].max()
     return Host(curve=curve, low=low, high=high, area=full_area(one), shown=float(one.area.sum()))
 
 
@@ -107,9 +113,13 @@ def _distance(one: SegmentFrames, host: Host, settings: Settings, fps: float) ->
         return np.inf
     onward = _places(curve, one.frame[common] + 1) - place
     missed = np.sum((one.step[common] - onward)[one.followed[common] > 0] ** 2, axis=1)
-    if len(missed) and fps * np.sqrt(missed.mean()) > settings.companion_speed_m_per_s:
+    beside = one.centre[common] - place
+    extent = float(np.max(host.high - host.low))
+    swings = extent >= _BODY_M and np.linalg.norm(beside - beside.mean(axis=0), axis=1).max() <= _SWING * extent
+    fastest = settings.companion_speed_m_per_s * (_LIMB if swings else 1.0)
+    if len(missed) and fps * np.sqrt(missed.mean()) > fastest:
         return np.inf
-    return float(np.linalg.norm(one.centre[common] - place, axis=1).mean())
+    return float(np.linalg.norm(beside, axis=1).mean())
 
 
 def _places(curve: Curve, frame: Int[np.ndarray, "moment"]) -> Float[np.ndarray, "moment 3"]:

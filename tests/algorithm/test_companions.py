@@ -30,6 +30,15 @@ def test_two_who_walk_in_step_side_by_side_stay_two() -> None:
     assert same_partition(bodies(one, other), np.array([0, 1]))
 
 
+def test_an_umbrella_is_of_whoever_walks_under_it() -> None:
+    """Together they are slim from no side, unlike two who walk side by side they are over one another."""
+    bearer = body(0, (0, 0, 0.85), (0.04, 0, 0), 30, half=(0.3, 0.3, 0.8))
+    umbrella = body(0, (0.2, 0, 1.95), (0.04, 0, 0), 30, half=(0.45, 0.45, 0.1))
+    assert same_partition(bodies(bearer, umbrella), np.array([0, 0]))
+    beside = body(0, (0.75, 0.2, 0.85), (0.04, 0, 0), 30, half=(0.3, 0.3, 0.8))
+    assert same_partition(bodies(bearer, beside), np.array([0, 1]))
+
+
 def test_a_swinging_leg_is_of_its_body() -> None:
     trunk = body(0, (0, 0, 1.2), (0.04, 0, 0), 60, half=(0.2, 0.15, 0.4))
     swing = 0.25 * np.sin(2 * np.pi * np.arange(60) / 32)[:, None] * (1, 0, 0)

@@ -60,3 +60,25 @@ def test_what_is_linked_already_stays_so() -> None:
 @pytest.mark.parametrize("parts", [[], [_fall((5.0, 0.0, 3.0), 0, 8)]])
 def test_fewer_than_two_are_no_flight(parts: list) -> None:
     assert _links(parts) == set()
+
+
+def test_what_lies_in_a_hand_before_it_is_thrown_flies_all_the_same() -> None:
+    rest = [(0, np.repeat(path[:1], 30, axis=0)) for _, path in _fall((0.5, 0.0, 4.0), 0, 1)]
+    thrown = [
+        (0, np.concatenate([still, path]))
+        for (_, still), (_, path) in zip(rest, _fall((0.5, 0.0, 4.0), 1, 8), strict=True)
+    ]
+    later = [(30 + first, path) for first, path in _fall((0.5, 0.0, 4.0), 9, 15)]
+    assert _links([thrown, later]) == {(0, 1)}
+
+
+def test_a_ball_near_its_top_is_slow_but_falls() -> None:
+    velocity = (0.5, 0.0, 2.0)
+    assert _links([_fall(velocity, 0, 5), _fall(velocity, 7, 12)]) == {(0, 1)}
+
+
+def test_what_floats_slowly_on_does_not_fly() -> None:
+    step = np.array([0.5, 0.0, 0.3]) / _FPS
+    offsets = np.random.default_rng(2).uniform(-0.1, 0.1, (20, 3))
+    parts = [[(first, offset + np.arange(first, first + 6)[:, None] * step) for offset in offsets] for first in (0, 8)]
+    assert _links(parts) == set()

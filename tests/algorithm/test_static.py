@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from worlds import box, depths_of, plane, small_camera, sphere
 
-from algorithm.static import background, usual_depth
+from algorithm.static import background, noise_in_time, usual_depth
 
 FRAMES = 30
 CAMERA = small_camera(40, 30)
@@ -93,6 +93,33 @@ def test_a_ball_that_comes_back_to_its_pixels_before_nothing_moves() -> None:
         np.testing.assert_array_equal(still.moving(depth), label == 1)
 
 
+@pytest.mark.parametrize("away", [4, 6])
+def test_what_comes_and_goes_before_nothing_moves_however_often_it_is_there(away: int) -> None:
+    """It is there for five frames, as deep each time, and away for some."""
+    here = np.arange(90) % (5 + away) < 5
+    depths = [np.full((8, 8), 2.0 if there else np.nan, np.float32) for there in here]
+    still = background(depths, tolerance_m=0.03)
+    assert [bool(still.moving(depth).all()) for depth in depths] == here.tolist()
+
+
+def test_faint_returns_that_flicker_stand_still() -> None:
+    generator = np.random.default_rng(3)
+    depths = [np.where(generator.random((20, 20)) < 0.35, np.float32(4.0), np.float32(np.nan)) for _ in range(90)]
+    still = background(depths, tolerance_m=0.03)
+    assert np.mean([still.moving(depth).mean() for depth in depths]) < 0.01
+
+
+def test_a_wall_that_is_hidden_for_long_and_then_lost_stands_still() -> None:
+    """It is seen in half of the frames, but in three quarters of those in which nothing hides it."""
+    depths = [np.full((4, 4), 4.0, np.float32) for _ in range(90)]
+    for number in range(20, 50):
+        depths[number][:] = 1.0 + number / 50
+    for number in range(50, 65):
+        depths[number][:] = np.nan
+    still = background(depths, tolerance_m=0.03)
+    assert [bool(still.moving(depth).any()) for depth in depths] == [20 <= number < 50 for number in range(90)]
+
+
 def test_what_swings_before_a_board_does_not_count_as_its_noise() -> None:
     """The swing is seen in a third of the frames: more than a quarter, which decides how much a pixel scatters."""
     board = np.full((10, 10), 4.0, np.float32)
@@ -102,6 +129,17 @@ def test_what_swings_before_a_board_does_not_count_as_its_noise() -> None:
     still = background(depths, tolerance_m=0.03)
     for t, depth in enumerate(depths):
         np.testing.assert_array_equal(still.moving(depth), depth < 3.9, err_msg=f"frame {t}")
+
+
+def test_the_noise_of_a_pixel_is_what_scatters_from_frame_to_frame() -> None:
+    """A surface that goes evenly by, two metres in all, has none."""
+    generator = np.random.default_rng(0)
+    evenly = [np.full((20, 20), 2.0 + 0.05 * t, np.float32) for t in range(FRAMES)]
+    noise = generator.normal(scale=0.04, size=(FRAMES, 20, 20)).astype(np.float32)
+    np.testing.assert_allclose(noise_in_time(evenly), 0.0, atol=1e-6)
+    rough = noise_in_time([depth + own for depth, own in zip(evenly, noise, strict=True)])
+    assert np.median(rough) == pytest.approx(0.04, rel=0.1)
+    assert not noise_in_time(evenly[:2]).any()
 
 
 def test_missing_returns_do_not_move_and_do_not_matter() -> None:
