@@ -17,17 +17,20 @@ try:
 
     from algorithm.settings import Settings, preset_settings
     from algorithm.staged import solve
-    from commands import drawing, judging, making, solving, starting, sweeping
+    from commands import drawing, judging, making, reporting, solving, starting, sweeping, viewing
     from commands.common import run
     from evaluation.scores import evaluate
     from recording.cache import Cache
+    from recording.camera import Camera
     from recording.causes import causes_of
+    from recording.corrections import Anchor, Correction, Corrections, load_corrections, save_corrections
     from recording.correspondence import flow_between, places_of, track
     from recording.errors import InputError
     from recording.manifest import load_manifest, recordings_of
     from recording.motions import Motions
     from recording.parquet import load_motions, save_motions
     from recording.recording import Recording
+    from recording.sensed import depth_recording
     from recording.store import load_recording, save_recording
     from recording.verify import verify
     from recording.version import VERSION
@@ -42,16 +45,22 @@ except KeyboardInterrupt:  # Importing takes a second or more; Ctrl-C ends it as
     sys.exit(130)
 
 __all__ = [
+    "Anchor",
     "Cache",
+    "Camera",
+    "Correction",
+    "Corrections",
     "InputError",
     "Motions",
     "Order",
     "Recording",
     "Settings",
     "causes_of",
+    "depth_recording",
     "evaluate",
     "flow_between",
     "generate",
+    "load_corrections",
     "load_family",
     "load_manifest",
     "load_motions",
@@ -60,6 +69,7 @@ __all__ = [
     "preset_settings",
     "recordings_of",
     "resense",
+    "save_corrections",
     "save_motions",
     "save_recording",
     "simulate",
@@ -91,6 +101,8 @@ app.command(judging.compare_command, name="compare", help_epilogue=judging.METHO
 app.command(sweeping.sweep_command, name="sweep")
 app.command(sweeping.tune_command, name="tune")
 app.command(drawing.figure_command, name="figure", help_epilogue=drawing.FIGURES_HELP)
+app.command(viewing.view_command, name="view")
+app.command(reporting.report_command, name="report")
 app.command(starting.doctor_command, name="doctor")
 
 

@@ -1,11 +1,9 @@
 """Steps 7 to 9 of the default: segments linked over the whole recording into motions, and these completed."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 
 import numpy as np
 from jaxtyping import Bool, Int
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from algorithm.companions import companions
 from algorithm.completion import completed
@@ -15,7 +13,9 @@ from algorithm.flights import flights
 from algorithm.followed import Followed
 from algorithm.given import Linker, Segments
 from algorithm.grouping import groups
-from algorithm.linking import confidences, is_scrap, linked, standings
+from algorithm.guidance import UNGUIDED, Guidance, joined
+from algorithm.guided import guided
+from algorithm.linking import confidences, is_scrap, standings
 from algorithm.restlessness import restless_path
 from algorithm.result import Motion, Solution
 from algorithm.segment_frames import SegmentFrames, segment_frames
@@ -23,7 +23,6 @@ from algorithm.settings import Settings
 from algorithm.stragglers import gathered
 from recording.motions import Link
 
-Pairs = Sequence[tuple[int, int]]
 _WORTH_KEEPING = 0.02
 """A link that was not made is told of from this confidence on."""
 
@@ -39,16 +38,24 @@ def common_fates(followed: Followed, settings: Settings) -> Segments:
     return body[segment]
 
 
-def continued(followed: Followed, segments: Segments, settings: Settings, linker: Linker | None) -> Solution:
+def continued(
+    followed: Followed,
+    segments: Segments,
+    settings: Settings,
+    linker: Linker | None,
+    guidance: Guidance = UNGUIDED,
+) -> Solution:
     """The motions: segments linked, stragglers gathered, and every point's places while it was hidden."""
     rows = _rows(followed, segments)
     if linker is None:
-        links, alternatives = links_between(rows, followed, settings)
+        links, alternatives = links_between(rows, followed, settings, guidance)
     else:
         pairs = linker(followed.trajectories, segments)
         links, alternatives = tuple(Link(before=a, after=b, confidence=1.0) for a, b in pairs), ()
-    motion = _joined([(link.before, link.after) for link in links], rows.count)
-    motion = _renumbered(gathered(rows.renamed(motion), settings, fps=followed.fps)[motion])
+    motion = _joined(links, rows.count)
+    motion = _renumbered(
+        _with_stragglers(rows.renamed(motion), settings, followed.fps, guidance.renamed(motion))[motion]
+    )
     motion = _without_few(motion, segments, settings)
     rows = rows.renamed(motion)
     of_trajectory = np.append(motion, -1)[segments]  # Noise, -1, stays noise.
@@ -68,28 +75,33 @@ def continued(followed: Followed, segments: Segments, settings: Settings, linker
 
 
 def links_between(
-    rows: SegmentFrames, followed: Followed, settings: Settings
+    rows: SegmentFrames, followed: Followed, settings: Settings, guidance: Guidance = UNGUIDED
 ) -> tuple[tuple[Link, ...], tuple[Link, ...]]:
     """The links of the likeliest assignment (step 9), and those that might stand in their place."""
-    flown = flights(rows, (), fps=followed.fps)
-    whole = _joined([(link.before, link.after) for link in flown], rows.count)
-    known, first, last = _ends(rows, whole, settings)
+    flown = guidance.allowed(flights(rows, guidance.forced_links(), fps=followed.fps), rows.count)
+    flown = (*flown, *guidance.beside(rows, is_scrap(rows, settings)))
+    known, unit, first, last = _ends(rows, _joined(flown, rows.count), settings)
     possible = candidates(known, settings, fps=followed.fps)
     standing = standings(known, followed.camera, settings, frames=followed.frames, fps=followed.fps)
-    found = linked(possible, standing)
+    begin = known.frame[np.searchsorted(known.segment, np.arange(known.count))]
+    found = guided(possible, standing, guidance.renamed(unit), begin)
     confidence = confidences(found)
     every = [
         Link(before=int(last[before]), after=int(first[after]), confidence=float(sure), chosen=bool(chosen))
         for before, after, sure, chosen in zip(found.before, found.after, confidence, found.chosen, strict=True)
     ]
-    made = tuple(link for link in every if link.chosen)
-    return (*made, *flown), tuple(link for link in every if not link.chosen and link.confidence >= _WORTH_KEEPING)
+    made = (*(link for link in every if link.chosen), *flown)
+    made += guidance.missing(_joined(made, rows.count))
+    return made, tuple(link for link in every if not link.chosen and link.confidence >= _WORTH_KEEPING)
 
 
 def _ends(
     rows: SegmentFrames, whole: Int[np.ndarray, "segment"], settings: Settings
-) -> tuple[SegmentFrames, Int[np.ndarray, "known"], Int[np.ndarray, "known"]]:
-    """What can be linked, the segments that are one flight as one; and the first and the last segment of each."""
+) -> tuple[SegmentFrames, Int[np.ndarray, "segment"], Int[np.ndarray, "known"], Int[np.ndarray, "known"]]:
+    """What can be linked, segments that are one flight as one; its number by segment; its first and last segment.
+
+    The number of a scrap is -1.
+    """
     whole_rows = rows.renamed(whole)
     main = np.flatnonzero(~is_scrap(whole_rows, settings))
     name = np.full(whole_rows.count, -1)
@@ -99,7 +111,16 @@ def _ends(
     last, first = np.zeros(whole_rows.count, int), np.zeros(whole_rows.count, int)
     last[whole[order]] = order
     first[whole[order[::-1]]] = order[::-1]
-    return whole_rows.renamed(name), first[main], last[main]
+    return whole_rows.renamed(name), name[whole], first[main], last[main]
+
+
+def _with_stragglers(
+    rows: SegmentFrames, settings: Settings, fps: float, guidance: Guidance
+) -> Int[np.ndarray, "motion"]:
+    """The motion that each motion belongs to."""
+    into = gathered(rows, settings, fps=fps)
+    shown = np.bincount(rows.segment, rows.area, minlength=rows.count).astype(float)  # Integers where nothing is.
+    return guidance.kept_apart(into, shown)
 
 
 def _rows(followed: Followed, segments: Segments) -> SegmentFrames:
@@ -127,11 +148,9 @@ def _motion(
     return Motion(segments=tuple(np.unique(own).tolist()), curve=curve, members=members, completion=completion)
 
 
-def _joined(pairs: Pairs, count: int) -> Int[np.ndarray, "segment"]:
-    """The motion of every segment when the pairs are joined."""
-    before, after = np.array(pairs, int).reshape(-1, 2).T
-    graph = coo_array((np.ones(len(before)), (before, after)), shape=(count, count))
-    return np.asarray(connected_components(graph, directed=False)[1], int) if count else np.zeros(0, int)
+def _joined(links: Iterable[Link], count: int) -> Int[np.ndarray, "segment"]:
+    """The motion of every segment when the links are made."""
+    return joined([(link.before, link.after) for link in links], count)
 
 
 def _renumbered(names: Int[np.ndarray, "segment"]) -> Int[np.ndarray, "segment"]:

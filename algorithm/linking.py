@@ -22,7 +22,7 @@ _LEAVING, _VANISHING = 1.0, 6.0
 """The prices of an end without a continuation: at the border of the picture, and in its middle."""
 _SCRAP, _WHOLE = 0.02, 0.3
 """A segment with less than the first share of what a near one shows links nothing; beyond the second all counts."""
-_SURE = 2.8, 0.11, 1.3
+_SURE = 0.3, 2.7, 0.2
 """Of the logistic curve from margin and restlessness to confidence, fitted on development recordings."""
 _RIVAL = 0.5
 """How fast the confidence of what was not chosen falls with what it would cost."""
@@ -63,9 +63,7 @@ def linked(possible: Candidates, standing: Standing) -> Links:
 
     A link spares the prices of staying alone at both of its ends, by the smaller of the two weights.
     """
-    before, after = possible.before, possible.after
-    weight = np.minimum(standing.weight[before], standing.weight[after])
-    gain = possible.price - weight * (standing.end[before] + standing.begin[after])
+    before, after, gain = possible.before, possible.after, gains(possible, standing)
     chosen = np.zeros(len(gain), bool)
     for part in _components(possible, len(standing.begin)):
         chosen[part[_assigned(before[part], after[part], gain[part])]] = True
@@ -73,12 +71,19 @@ def linked(possible: Candidates, standing: Standing) -> Links:
     return Links(before=before, after=after, chosen=chosen, margin=margin, restlessness=possible.restlessness)
 
 
+def gains(possible: Candidates, standing: Standing) -> Float[np.ndarray, "link"]:
+    """What each link costs beyond leaving both its ends alone: below 0 it is worth making."""
+    before, after = possible.before, possible.after
+    weight = np.minimum(standing.weight[before], standing.weight[after])
+    return possible.price - weight * (standing.end[before] + standing.begin[after])
+
+
 def confidences(links: Links) -> Float[np.ndarray, "link"]:
     """The probability that each link is right: the larger its margin, and the calmer what it links.
 
     Of one that was not chosen it is at most a half, and falls with what choosing it would cost.
     """
-    evidence = _SURE[0] + _SURE[1] * links.margin - _SURE[2] * np.log(links.restlessness)
+    evidence = _SURE[0] + _SURE[1] * np.log1p(np.maximum(links.margin, 0.0)) - _SURE[2] * np.log(links.restlessness)
     evidence = np.where(links.chosen, evidence, _RIVAL * np.minimum(links.margin, 0.0))
     return 1.0 / (1.0 + np.exp(-np.clip(evidence, -50.0, 50.0)))
 
@@ -171,19 +176,26 @@ def _margins(
 ) -> Float[np.ndarray, "link"]:
     """The rise of the total price when one link is dropped or exchanged for another, the cheapest way.
 
-    For a chosen link positive; for another one negative: what it would cost to take it instead.
+    For a chosen link positive; for another one negative: what it would cost to take it instead. The two segments that
+    this leaves alone may be linked with each other: then two people have changed places.
     """
     count = int(max(possible.before.max(initial=-1), possible.after.max(initial=-1))) + 1
-    of_before, of_after = np.zeros(count), np.zeros(count)  # The gain of the chosen link of each segment.
-    of_before[possible.before[chosen]] = gain[chosen]
-    of_after[possible.after[chosen]] = gain[chosen]
-    loss = gain - of_before[possible.before] - of_after[possible.after]  # Of taking it and dropping its rivals.
-    margin = np.where(chosen, -gain, -loss)
-    number = np.full(count, -1)
-    number[possible.before[chosen]] = np.flatnonzero(chosen)
-    number_after = np.full(count, -1)
-    number_after[possible.after[chosen]] = np.flatnonzero(chosen)
+    number_before, number_after = np.full(count, -1), np.full(count, -1)  # The chosen link of each segment.
+    number_before[possible.before[chosen]] = number_after[possible.after[chosen]] = np.flatnonzero(chosen)
+    every = {pair: float(its) for pair, its in zip(_pairs(possible), gain, strict=True)}
+    margin = np.where(chosen, -gain, -np.inf)
     for link in np.flatnonzero(~chosen).tolist():
-        for rival in {number[possible.before[link]], number_after[possible.after[link]]} - {-1}:
-            margin[rival] = min(margin[rival], loss[link])
+        rivals = {number_before[possible.before[link]], number_after[possible.after[link]]} - {-1}
+        loss = gain[link] - sum(gain[rival] for rival in rivals)
+        if len(rivals) == 2:
+            follower = possible.after[number_before[possible.before[link]]]
+            leader = possible.before[number_after[possible.after[link]]]
+            loss += min(every.get((int(leader), int(follower)), 0.0), 0.0)
+        margin[link] = -loss
+        for rival in rivals:
+            margin[rival] = min(margin[rival], loss)
     return margin
+
+
+def _pairs(possible: Candidates) -> list[tuple[int, int]]:
+    return list(zip(possible.before.tolist(), possible.after.tolist(), strict=True))

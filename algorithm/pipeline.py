@@ -1,6 +1,6 @@
 """Algorithm 1 of the paper: from a recording to motions."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -9,6 +9,7 @@ from jaxtyping import Float32
 from algorithm import clustering
 from algorithm.bottom_up import Reach, completed_bottom_up
 from algorithm.continued import common_fates, continued
+from algorithm.corrections import check_corrections, corrected
 from algorithm.followed import Followed
 from algorithm.following import Tolerances, followed
 from algorithm.given import NOTHING_GIVEN, Given, Linker, Segments
@@ -21,25 +22,48 @@ from algorithm.spacing import mean_point_spacing
 from algorithm.static import background
 from algorithm.stopwatch import Stopwatch
 from algorithm.trajectories import Trajectories, chained, lasting
-from recording.motions import Motions
+from recording.corrections import Corrections
+from recording.motions import Making, Motions
 from recording.progress import tracked
 from recording.recording import Recording
+from recording.version import VERSION
 
 Depths = Sequence[Float32[np.ndarray, "row column"]]
 
 
-def solve(recording: Recording, settings: Settings | None = None, given: Given = NOTHING_GIVEN) -> Motions:
+def solve(
+    recording: Recording,
+    settings: Settings | None = None,
+    given: Given = NOTHING_GIVEN,
+    corrections: Corrections | None = None,
+) -> Motions:
     """The motions in a recording, completed where they were hidden.
 
-    Of the recording nothing but depths, camera and frame rate is read. What is `given` takes a stage's place.
+    Of the recording nothing but depths, camera and frame rate is read. What is `given` takes a stage's place;
+    `corrections` by hand, which must be of this recording, are respected from the links on.
     """
     settings = settings or Settings()
+    digest = recording.digest()
+    check_corrections(corrections, digest, settings, given)
     watch = Stopwatch()
     followed = followed_points(recording, settings, watch, given)
     segments = given.segments(followed.trajectories) if given.segments else segmented(followed, settings, watch)
     with watch.stage("completion"):
-        solution = completed_motions(followed, segments, settings, given.links)
-    return motions_of(solution, recording, settings, watch.by_stage())
+        solution = completed_motions(followed, segments, settings, given.links, corrections)
+    return motions_of(solution, making_of(digest, settings, watch.by_stage(), corrections))
+
+
+def making_of(
+    recording_digest: str, settings: Settings, seconds: Mapping[str, float], corrections: Corrections | None
+) -> Making:
+    """How motions were made."""
+    return Making(
+        settings=settings.model_dump(),
+        recording_digest=recording_digest,
+        version=VERSION,
+        seconds=dict(seconds),
+        corrections=corrections,
+    )
 
 
 def followed_points(
@@ -137,9 +161,16 @@ def segmented(followed: Followed, settings: Settings, watch: Stopwatch) -> Segme
 
 
 def completed_motions(
-    followed: Followed, segments: Segments, settings: Settings, linker: Linker | None = None
+    followed: Followed,
+    segments: Segments,
+    settings: Settings,
+    linker: Linker | None = None,
+    corrections: Corrections | None = None,
 ) -> Solution:
     """Segments joined into motions, and every point's places while it was hidden (steps 7 to 9)."""
+    if corrections is not None:
+        mended = corrected(followed, segments, settings, corrections)
+        return continued(followed, mended.segments, settings, linker, mended.guidance)
     if settings.completing == "continuation":
         return continued(followed, segments, settings, linker)
     reach = Reach(

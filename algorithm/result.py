@@ -1,6 +1,5 @@
 """The solver's answer as the rows that `motions.parquet` holds."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,11 +9,8 @@ from scipy.sparse.csgraph import connected_components
 
 from algorithm.completion import Completion
 from algorithm.representative import Curve
-from algorithm.settings import Settings
 from algorithm.trajectories import Trajectories
 from recording.motions import NOISE, OBSERVED, Event, Link, Making, Motions, Representative
-from recording.recording import Recording
-from recording.version import VERSION
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -46,8 +42,8 @@ class Solution:
     """Of motions that merge or split, which are numbered as in `motions`."""
 
 
-def motions_of(solution: Solution, recording: Recording, settings: Settings, seconds: Mapping[str, float]) -> Motions:
-    """The solution with everything that tells how it was made."""
+def motions_of(solution: Solution, making: Making) -> Motions:
+    """The solution as rows, with how it was made."""
     trajectories = solution.trajectories
     motion = np.full(trajectories.count, NOISE)
     for number, found in enumerate(solution.motions):
@@ -72,12 +68,7 @@ def motions_of(solution: Solution, recording: Recording, settings: Settings, sec
         links=solution.links,
         alternatives=solution.alternatives,
         events=solution.events,
-        making=Making(
-            settings=settings.model_dump(),
-            recording_digest=recording.digest(),
-            version=VERSION,
-            seconds=dict(seconds),
-        ),
+        making=making,
     ).rows(order)
 
 

@@ -8,6 +8,7 @@ from pydantic import Field
 
 from recording.checks import Frozen, nearest_name, toml_document, validated
 from recording.errors import InputError
+from recording.markup import facts, folded, table
 
 Positive = Annotated[float, Field(gt=0)]
 Share = Annotated[float, Field(ge=0, le=1)]
@@ -124,6 +125,15 @@ class Settings(Frozen):
     """Like `restlessness`, for the judgement of links, where a turn must be possible."""
     longest_hole_seconds: Positive = 3.0
     """Seconds: a longer hole is not bridged."""
+
+    def _repr_html_(self) -> str:
+        """What differs from the preset, and all settings with their meaning, as a notebook shows them."""
+        usual = preset_settings(self.preset)
+        changed = [(name, value) for name, value in self if value != getattr(usual, name)]
+        rows = [(name, value, Settings.model_fields[name].description) for name, value in self]
+        differs = ", ".join(f"{name} = {value}" for name, value in changed) or "nothing"
+        every = folded(f"All {len(rows)} settings", table(("setting", "value", "meaning"), rows))
+        return str(facts([("preset", self.preset), ("changed", differs)]) + every)
 
 
 _PAPER: dict[str, Any] = {

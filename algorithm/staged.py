@@ -2,10 +2,19 @@
 
 from dataclasses import dataclass, field
 
+from algorithm.corrections import check_corrections
 from algorithm.given import NOTHING_GIVEN, Given
 from algorithm.kept_stages import FLOWING, grouped_form, observed_form
 from algorithm.moving_flows import moving_flows
-from algorithm.pipeline import completed_motions, footage_of, segmented, timed_flows, trajectories_along, with_patches
+from algorithm.pipeline import (
+    completed_motions,
+    footage_of,
+    making_of,
+    segmented,
+    timed_flows,
+    trajectories_along,
+    with_patches,
+)
 from algorithm.result import motions_of
 from algorithm.scene_flow import flows_between
 from algorithm.settings import Settings
@@ -13,6 +22,7 @@ from algorithm.spacing import mean_point_spacing
 from algorithm.stages import Flowing, Grouped, Observed, Stage, keys_of, readable, total_seconds
 from algorithm.stopwatch import Stopwatch
 from recording.cache import Cache, kept
+from recording.corrections import Corrections
 from recording.motions import Motions
 from recording.recording import Recording
 
@@ -22,15 +32,18 @@ def solve(
     settings: Settings | None = None,
     given: Given = NOTHING_GIVEN,
     cache: Cache | None = None,
+    corrections: Corrections | None = None,
 ) -> Motions:
     """The motions in a recording, completed where they were hidden: those of `algorithm.pipeline.solve`, row for row.
 
     Of the recording nothing but depths, camera and frame rate is read. What is `given` takes a stage's place. A stage
-    whose result the cache holds is not made again; seconds are those that its making took.
+    whose result the cache holds is not made again; seconds are those that its making took. `corrections` by hand, which
+    must be of this recording, are respected from the links on.
     """
-    digest = recording.digest()
+    digest, settings = recording.digest(), settings or Settings()
+    check_corrections(corrections, digest, settings, given)
     return Course(
-        recording=recording, digest=digest, settings=settings or Settings(), given=given, cache=cache
+        recording=recording, digest=digest, settings=settings, given=given, cache=cache, corrections=corrections
     ).motions()
 
 
@@ -44,6 +57,7 @@ class Course:
     settings: Settings
     given: Given = NOTHING_GIVEN
     cache: Cache | None = None
+    corrections: Corrections | None = None
     keys: dict[Stage, str] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -68,9 +82,11 @@ class Course:
         """What moves together, completed where it was hidden (steps 7 to 9)."""
         together, watch = grouped or self.grouped(), Stopwatch()
         with watch.stage("completion"):
-            solution = completed_motions(together.followed, together.segments, self.settings, self.given.links)
+            solution = completed_motions(
+                together.followed, together.segments, self.settings, self.given.links, self.corrections
+            )
         seconds = total_seconds(together.seconds, watch.by_stage())
-        return motions_of(solution, self.recording, self.settings, seconds)
+        return motions_of(solution, making_of(self.digest, self.settings, seconds, self.corrections))
 
     def _made_flowing(self) -> Flowing:
         watch, settings = Stopwatch(), readable(self.settings, "flow")

@@ -42,12 +42,14 @@ MODULES: Mapping[Stage, tuple[str, ...]] = {
         "algorithm.trajectories",
     ),
     "segments": ("algorithm.clustering", "algorithm.continued"),
-    "motions": ("algorithm.bottom_up", "algorithm.continued", "algorithm.result"),
+    "motions": ("algorithm.bottom_up", "algorithm.continued", "algorithm.corrections", "algorithm.result"),
 }
 """What each stage is made by: with all that these import, and the text of `_TOGETHER`, its code."""
 _TOGETHER = ("algorithm.kept_stages", "algorithm.pipeline", "algorithm.staged", "algorithm.stages")
 _TOLD = ("algorithm.settings",)
 """Its values stand in the keys; its text does not matter."""
+_SHOWN = ("recording.drawing", "recording.markup", "recording.palette")
+"""How values look when they are shown changes no result."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -121,7 +123,7 @@ def keys_of(recording_digest: str, settings: Settings) -> dict[Stage, str]:
         document = {
             "before": before,
             "settings": settings.model_dump(mode="json", include=set(fields_of(stage))),
-            "code": code_digest(*MODULES[stage], alone=_TOGETHER, apart=_TOLD),
+            "code": code_digest(*MODULES[stage], alone=_TOGETHER, apart=_TOLD + _SHOWN),
         }
         keys[stage] = before = key_of(stage, document)
     return keys

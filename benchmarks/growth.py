@@ -1,8 +1,9 @@
 """How time and memory of segmentation and completion grow with the number of trajectories, from 1 to 64 times as many.
 
 The trajectories of one recording are repeated: far apart in space (a larger crowd), or one recording after the other in
-time (a longer recording). Every point is measured in a process of its own; compiling is not counted. The exponent is
-the slope of the logarithm of the time over that of the number, by least squares. Takes about half an hour.
+time (a longer recording). Every point is measured in a process of its own; compiling is not counted. Seconds are those
+that the processor has worked, so that other work on the machine does not count. The exponent is the slope of their
+logarithm over that of the number, by least squares. Takes about a quarter of an hour.
 """
 
 import json as json_format
@@ -88,13 +89,13 @@ def point(folder: Path, preset: Preset, arm: Arm, factor: int) -> None:
 
 
 def _stages(followed: Followed, settings: Settings) -> tuple[dict[str, float], dict[str, float]]:
-    """Seconds, and the largest memory of the process so far in megabytes, of segmentation and completion."""
-    moments, largest_mb = [time.perf_counter()], []
+    """Seconds of work, and the largest memory of the process so far in megabytes, of segmentation and completion."""
+    moments, largest_mb = [time.process_time()], []
     segments = segmented(followed, settings, Stopwatch())
-    moments.append(time.perf_counter())
+    moments.append(time.process_time())
     largest_mb.append(_largest_memory_mb())
     completed_motions(followed, segments, settings)
-    moments.append(time.perf_counter())
+    moments.append(time.process_time())
     largest_mb.append(_largest_memory_mb())
     seconds = np.diff(moments).tolist()
     return dict(zip(STAGES, seconds, strict=True)), dict(zip(STAGES, largest_mb, strict=True))

@@ -11,6 +11,7 @@ from algorithm.settings import Settings, changed_settings, settings_from_file
 from algorithm.staged import solve
 from commands.common import CACHING, WRITING, Caching, Writing
 from evaluation.methods import settings_of
+from recording.corrections import load_corrections
 from recording.errors import InputError
 from recording.parquet import save_motions
 from recording.store import load_recording
@@ -28,12 +29,15 @@ def solve_command(
     preset: Literal["default", "paper"] = "default",
     settings: Path | None = None,
     set_: Annotated[tuple[str, ...], Parameter(name="--set", negative="")] = (),
+    corrections: Path | None = None,
     caching: Caching = CACHING,
     common: Writing = WRITING,
 ) -> None:
     """Find the motions in a recording and complete them where they were hidden.
 
-    Example: `unocclude solve recordings/wall --preset paper --set eps3=5`
+    Examples: `unocclude solve recordings/wall --preset paper --set eps3=5`
+
+    `unocclude solve recordings/9men --corrections recordings/9men/corrections.toml`
 
     Results of its stages are kept: after another setting is changed, only what depends on that is made again.
 
@@ -43,6 +47,8 @@ def solve_command(
         preset: Settings to start from: the best that we know, or the paper's.
         settings: TOML file with settings that replace the preset's.
         set_: `KEY=VALUE`, a setting that replaces the others'; may be given several times.
+        corrections: TOML file with what was said by hand of segments and links, from `unocclude view` or written by
+            hand (docs/corrections.md).
     """
     place = output or recording / "motions.parquet"
     if place.exists() and not common.overwrite:
@@ -52,9 +58,10 @@ def solve_command(
     if settings is not None:
         chosen = settings_from_file(chosen, settings)
     chosen = changed_settings(chosen, dict(map(_key_and_value, set_)), source="--set")
+    said = load_corrections(corrections) if corrections is not None else None
     begun = time.perf_counter()
     with common.progress():
-        motions = solve(found, chosen, cache=caching.chosen())
+        motions = solve(found, chosen, cache=caching.chosen(), corrections=said)
     spent = time.perf_counter() - begun
     save_motions(motions, place, overwrite=common.overwrite)
     total = motions.making.seconds["total"]

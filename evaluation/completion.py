@@ -22,6 +22,7 @@ class PointErrors:
 
     objectid: Int64[np.ndarray, "point"]
     """The object of the point's material point."""
+    trajectory: Int64[np.ndarray, "point"]
     frame: Int64[np.ndarray, "point"]
     hidden_frames: Int64[np.ndarray, "point"]
     """Length in frames of the run of hidden frames that the frame lies in."""
@@ -87,6 +88,7 @@ def point_errors(
         parts.append(
             PointErrors(
                 objectid=objectid[rows],
+                trajectory=motions.trajectory[completed[rows]].astype(np.int64),
                 frame=frame[rows],
                 hidden_frames=lengths[number, frame[rows]],
                 error_m=np.linalg.norm(motions.position[completed[rows]] - true_place, axis=1),
@@ -147,6 +149,7 @@ def _joined(parts: list[PointErrors]) -> PointErrors:
     nothing = np.empty(0, np.int64)
     return PointErrors(
         objectid=np.concatenate([nothing, *(part.objectid for part in parts)]),
+        trajectory=np.concatenate([nothing, *(part.trajectory for part in parts)]),
         frame=np.concatenate([nothing, *(part.frame for part in parts)]),
         hidden_frames=np.concatenate([nothing, *(part.hidden_frames for part in parts)]),
         error_m=np.concatenate([np.empty(0), *(part.error_m for part in parts)]),

@@ -32,7 +32,13 @@ def right_links(observations: Observations, links: Sequence[tuple[int, int]]) ->
 
 
 def link_recall(observations: Observations, visibility: Visibility) -> float | None:
-    """The share of holes that a motion bridges, in [0, 1]; None where there is no hole or no X-ray.
+    """The share of holes that a motion bridges (`bridged_holes`), in [0, 1]; None without a hole or X-ray."""
+    bridged = bridged_holes(observations, visibility)
+    return float(bridged.mean()) if len(bridged) else None
+
+
+def bridged_holes(observations: Observations, visibility: Visibility) -> Bool[np.ndarray, "hole"]:
+    """Which holes a motion bridges, in the order of `recording.visibility.holes`; empty without X-ray.
 
     A hole is bridged when one motion holds most of the object's observed points both in the visible episode before
     the hole and in the one after it, and has most of its own points on that object. An episode without a point in a
@@ -40,7 +46,7 @@ def link_recall(observations: Observations, visibility: Visibility) -> float | N
     """
     numbers, found = episodes(visibility), holes(visibility)
     if not found or numbers is None:
-        return None
+        return np.zeros(0, bool)
     owner = majority(motion_table(observations))
     bridged = []
     for hole in found:
@@ -49,7 +55,7 @@ def link_recall(observations: Observations, visibility: Visibility) -> float | N
             _leader(observations, hole.objectid, episode == episode[at]) for at in (hole.first - 1, hole.stop)
         )
         bridged.append(before is not None and before == after and owner[before] == hole.objectid)
-    return float(np.mean(bridged))
+    return np.array(bridged, bool)
 
 
 def _leader(observations: Observations, objectid: int, frames: np.ndarray) -> int | None:

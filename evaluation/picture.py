@@ -10,15 +10,14 @@ from algorithm.depth_image import DepthRange, depth_range
 from evaluation.figures.panels import (
     PLAN,
     as_metres,
-    as_picture,
     draw_curve,
-    draw_dots,
     draw_points,
     moments_of,
     on_plane,
 )
 from evaluation.figures.style import TRUTH, colours_of, styled, write_figure
 from recording.camera import Camera
+from recording.drawing import as_picture, draw_dots
 from recording.errors import InputError
 from recording.motions import NOISE, Motions, Representative, mean_places
 from recording.recording import Recording

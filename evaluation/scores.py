@@ -32,6 +32,7 @@ from evaluation.identity import assa, fragmentations, hota, id_switches, idf1, p
 from evaluation.ignored import counted, uncarried
 from evaluation.links import link_precision, link_recall
 from evaluation.observations import Observations, observations_of, require_fitting
+from evaluation.scorecard import Scorecard
 from evaluation.segmentation import (
     coverage,
     found,
@@ -73,10 +74,10 @@ class Evidence:
         return {objectid: motion for objectid, (motion, _) in self.motion_of.items()}
 
 
-def evaluate(recording: Recording, motions: Motions) -> Scores:
+def evaluate(recording: Recording, motions: Motions) -> Scorecard:
     """The scores of the motions of a recording; InputError where they cannot be of that recording."""
     check_belongs(recording, motions)
-    return scores(recording, motions)
+    return Scorecard(scores(recording, motions))
 
 
 def check_belongs(recording: Recording, motions: Motions) -> str | None:

@@ -7,11 +7,16 @@ _NOTHING = "-"
 
 def summary(scores: dict[str, Any]) -> str:
     """The scores in lines of text; "-" stands for what cannot be computed."""
+    return "\n".join(f"{name:<15} {text}" for name, text in summary_rows(scores))
+
+
+def summary_rows(scores: dict[str, Any]) -> list[tuple[str, str]]:
+    """The scores, line by line: what each is about, and what is to be said of it."""
     motions, segments, completion = scores["motions"], scores["segments"], scores["completion"]
     identity, links, seconds = scores["identity"], scores["links"], scores["seconds"]
     objects, hidden = _number(scores["objects"]), _number(completion["hidden_object_frames"])
     holes, longest = _number(scores["holes"]), _number(scores["longest_hole_frames"])
-    rows = [
+    return [
         ("recording", f"{scores['scene'] or 'unnamed'}: {scores['frames']} frames, {objects} moving objects"),
         ("", f"{_number(scores['points_per_frame'], '.0f')} points a frame; holes: {holes}, longest {longest} frames"),
         ("motions found", f"{_number(motions['found'])} of {objects}, among {_number(motions['count'])} motions"),
@@ -42,7 +47,6 @@ def summary(scores: dict[str, Any]) -> str:
         ("points hold", _calibration(scores["calibration"], "completed")),
         ("time", f"{_number(seconds['total'], '.1f')} s, of it flow {_number(seconds['flow'], '.1f')} s"),
     ]
-    return "\n".join(f"{name:<15} {text}" for name, text in rows)
 
 
 def _events(events: dict[str, Any] | None) -> str:
@@ -61,7 +65,7 @@ def _calibration(calibration: dict[str, Any] | None, what: str) -> str:
     return "; ".join(said) or _NOTHING
 
 
-def _number(value: float | None, form: str = "") -> str:
+def _number(value: float | int | None, form: str = "") -> str:
     return _NOTHING if value is None else format(value, form)
 
 

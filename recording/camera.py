@@ -4,7 +4,7 @@ Axes are OpenCV's: x right, y down, z forward. Depth is the distance along z in 
 returned. A picture position is continuous: pixel (0, 0) has its centre at column 0.5, row 0.5.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from jaxtyping import Float
@@ -35,8 +35,8 @@ class Camera:
     """Column of the principal point, pixels, in the convention of `PIXEL_CENTRE`."""
     cy: float
     """Row of the principal point, pixels, in the convention of `PIXEL_CENTRE`."""
-    world_from_camera: Float[np.ndarray, "4 4"]
-    """Rigid transform that takes camera points to world points, metres."""
+    world_from_camera: Float[np.ndarray, "4 4"] = field(default_factory=lambda: np.eye(4))
+    """Rigid transform that takes camera points to world points, metres; by default both have the same axes."""
 
     @property
     def position(self) -> Float[np.ndarray, "3"]:

@@ -1,15 +1,25 @@
 """Motions: what a solver says of a recording, one row a point and frame."""
 
 from dataclasses import dataclass, field, fields
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from jaxtyping import Bool, Float, Float32, Int32, UInt8
+
+from recording.camera import Camera, transformed
+from recording.corrections import Corrections
+from recording.markup import chip, note, table
+from recording.palette import colour_of
+
+if TYPE_CHECKING:
+    import matplotlib.axes
 
 NOISE = -1
 SOURCES = ("observed", "intra", "inter")
 """How a row came about; `Motions.source` counts in this order."""
 OBSERVED, INTRA, INTER = range(3)
+_MOST_ROWS = 40
+"""Motions that a notebook's table shows at the most."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -65,6 +75,8 @@ class Making:
     version: str | None = None
     seconds: dict[str, float] = field(default_factory=dict)
     """By stage."""
+    corrections: Corrections | None = None
+    """By hand, that were respected."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -115,6 +127,52 @@ class Motions:
             making=self.making,
         )
 
+    def plot(
+        self, camera: Camera | None = None, *, axes: "matplotlib.axes.Axes | None" = None
+    ) -> "matplotlib.axes.Axes":
+        """Draw the way of every motion, on new axes if none are given: dotted where it was completed.
+
+        Through a camera they are seen from its top. Without one they lie on the two world axes along which they reach
+        farthest: for people those of the floor, whichever way is up.
+        """
+        from recording.drawing import draw_ways, new_axes  # noqa: PLC0415 - matplotlib is slow to import.
+
+        curves = self.representatives or mean_places(self)
+        places, names, plane = _seen_from(camera, [curve.position for curve in curves])
+        drawn = axes or new_axes(shape=0.6)
+        draw_ways(
+            drawn,
+            [(curve.motion, place[:, plane], curve.observed) for curve, place in zip(curves, places, strict=True)],
+        )
+        drawn.set(xlabel=names[plane[0]], ylabel=names[plane[1]])
+        return drawn
+
+    def __repr__(self) -> str:
+        completed = int((~self.observed).sum())
+        return f"<Motions: {len(self.motion_ids)} motions, {len(self):,} points, {completed:,} of them completed>"
+
+    def _repr_html_(self) -> str:
+        """A row a motion, as a notebook shows it; of very many the first."""
+        curves = self.representatives or mean_places(self)
+        head = ("motion", "frames", "of them unseen", "trajectories", "points seen", "points completed")
+        rows = [self._facts(curve) for curve in curves[:_MOST_ROWS]]
+        left_out = f"{len(curves) - _MOST_ROWS} more motions, " if len(curves) > _MOST_ROWS else ""
+        noise = int((self.motion == NOISE).sum())
+        more = f"{left_out}{noise:,} points of no motion, {len(self.links)} links, {len(self.events)} events"
+        return str(table(head, rows) + note(more))
+
+    def _facts(self, curve: Representative) -> tuple[object, ...]:
+        rows = self.motion == curve.motion
+        seen = int((rows & self.observed).sum())
+        return (
+            chip(colour_of(curve.motion)) + f" {curve.motion}",
+            f"{curve.frame.min()} to {curve.frame.max()}",
+            int((~curve.observed).sum()),
+            f"{len(np.unique(self.trajectory[rows])):,}",
+            f"{seen:,}",
+            f"{int(rows.sum()) - seen:,}",
+        )
+
 
 COLUMNS = tuple(entry.name for entry in fields(Motions))[:8]
 """The fields of `Motions` that have an entry a row."""
@@ -138,3 +196,14 @@ def _mean_place(motions: Motions, motion: int) -> Representative:
     )
     observed = np.bincount(index, motions.observed[rows]) > 0
     return Representative(motion=motion, frame=frame.astype(np.int32), position=position, observed=observed)
+
+
+def _seen_from(
+    camera: Camera | None, places: list[Float[np.ndarray, "moment 3"]]
+) -> tuple[list[Float[np.ndarray, "moment 3"]], tuple[str, str, str], list[int]]:
+    """Places in the axes that they are drawn in, the names of these, and the two that are shown."""
+    if camera is not None:
+        names = ("right of the camera [m]", "below the camera [m]", "before the camera [m]")
+        return [transformed(np.linalg.inv(camera.world_from_camera), each) for each in places], names, [0, 2]
+    reach = np.ptp(np.concatenate(places), axis=0) if places else np.array([1.0, 1.0, 0.0])
+    return places, ("x [m]", "y [m]", "z [m]"), sorted(np.argsort(-reach, kind="stable")[:2].tolist())

@@ -12,6 +12,7 @@ from pydantic import Field, model_validator
 
 from recording.atomic import whole_file
 from recording.checks import Frozen, validated
+from recording.corrections import Corrections
 from recording.errors import InputError
 from recording.motions import NOISE, SOURCES, Event, EventKind, Link, Making, Motions, Representative
 
@@ -77,6 +78,7 @@ class _Belongings(Frozen):
     recording_digest: str | None = None
     version: str | None = None
     seconds: dict[str, float] = Field(default_factory=dict)
+    corrections: Corrections | None = None
     representatives: tuple[_StoredRepresentative, ...] = ()
     links: tuple[_StoredLink, ...] = ()
     alternatives: tuple[_StoredLink, ...] = ()
@@ -170,11 +172,13 @@ def _line(error: Exception) -> str:
 
 
 def _belongings(motions: Motions) -> dict[str, Any]:
+    corrections = motions.making.corrections
     return {
         "settings": motions.making.settings,
         "recording_digest": motions.making.recording_digest,
         "version": motions.making.version,
         "seconds": motions.making.seconds,
+        "corrections": corrections and corrections.model_dump(mode="json"),
         "representatives": [
             {
                 "motion": entry.motion,
@@ -209,6 +213,7 @@ def _read_belongings(place: Path, metadata: dict[bytes, bytes]) -> dict[str, Any
             recording_digest=read.recording_digest,
             version=read.version,
             seconds=read.seconds,
+            corrections=read.corrections,
         ),
         "representatives": tuple(entry.representative for entry in read.representatives),
         "links": tuple(Link(**link.model_dump()) for link in read.links),

@@ -4,14 +4,28 @@ import hashlib
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from recording.camera import Camera
 from recording.errors import InputError
 from recording.exr import stored_depth
 from recording.frame import Frame
+from recording.markup import beside, depth_thumbnail, facts
 from recording.metadata import Metadata
+from recording.motions import NOISE, Motions
+from recording.palette import colours_of
 from recording.truth import Truth
 from recording.xray import XRay
+
+if TYPE_CHECKING:
+    import matplotlib.axes
+
+_FRAMES_LOOKED_AT = 9
+"""For the range of colours in a picture."""
+_SEEN, _COMPLETED = 2.5, 6.0
+"""Sizes of points in a picture: those that nobody saw are large, and pale."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -50,6 +64,65 @@ class Recording:
         for frame in self.frames:
             digest.add(frame)
         return digest.hexdigest()
+
+    def plot(
+        self,
+        frame: int | None = None,
+        *,
+        motions: Motions | None = None,
+        axes: "matplotlib.axes.Axes | None" = None,
+    ) -> "matplotlib.axes.Axes":
+        """Draw the depth of one frame, the middle one if none is named, on new axes if none are given.
+
+        Upon it the points that motions have in this frame, in the colours of the motions; the completed ones are pale:
+        so one sees through what hides them.
+        """
+        from recording.drawing import draw_depth, draw_dots, new_axes  # noqa: PLC0415 - matplotlib is slow to import.
+
+        number = range(self.metadata.frames)[self.metadata.frames // 2 if frame is None else frame]
+        drawn = axes or new_axes(shape=0.82 * self.camera.height / self.camera.width)
+        within = self._usual_depths()
+        draw_depth(drawn, self.frames[number].depth, self.camera, within=within, faint=motions is not None)
+        drawn.set_title(f"{self.metadata.name or 'recording'}, frame {number}, {number / self.fps:.2f} s")
+        if motions is not None:
+            for observed, size, alpha in ((False, _COMPLETED, 0.3), (True, _SEEN, 0.9)):
+                shown = (motions.frame == number) & (motions.motion != NOISE) & (motions.observed == observed)
+                place = self.camera.pixel_from_world(motions.position[shown].astype(np.float64))[0]
+                draw_dots(drawn, place, colours_of(motions.motion[shown]), size=size, alpha=alpha)
+        return drawn
+
+    def _usual_depths(self) -> tuple[float, float]:
+        """The least and the greatest depth of some frames spread over the recording, so that colours mean the same."""
+        moments = np.unique(np.linspace(0, self.metadata.frames - 1, _FRAMES_LOOKED_AT).round().astype(int))
+        depths = [self.frames[int(moment)].depth for moment in moments]
+        present = np.concatenate([depth[np.isfinite(depth)] for depth in depths])
+        return (float(present.min()), float(present.max())) if present.size else (0.0, 1.0)
+
+    def __repr__(self) -> str:
+        about = self.metadata
+        known = f", {len(self.moving_ids)} moving objects" if about.objects is not None else ""
+        size = f"{about.frames} frames of {about.width}x{about.height} pixels"
+        return f"<Recording {about.name or 'without a name'}: {size}, {self.fps:g} a second{known}>"
+
+    def _repr_html_(self) -> str:
+        """What is known of it, and the depth of its middle frame, as a notebook shows it."""
+        middle = self.metadata.frames // 2
+        picture = depth_thumbnail(self.frames[middle].depth, f"frame {middle}")
+        return str(beside(facts(self._facts()), picture))
+
+    def _facts(self) -> list[tuple[str, str]]:
+        about = self.metadata
+        angle_deg = 2 * np.degrees(np.arctan(about.width / (2 * self.camera.fx)))
+        moving = [entry.name for entry in about.objects or () if entry.moving]
+        truth = [name for name, known in (("meshes", self.truth), ("X-ray twins", self.xray)) if known is not None]
+        return [
+            ("recording", about.name or "without a name"),
+            ("frames", f"{about.frames}, {about.fps:g} a second, {about.frames / about.fps:.1f} s"),
+            ("picture", f"{about.width} x {about.height} pixels, {angle_deg:.0f}° wide"),
+            ("sensor", str((about.sensor or {}).get("preset", "unknown"))),
+            ("moving objects", "unknown" if about.objects is None else f"{len(moving)}: {', '.join(moving)}"),
+            ("truth", ", ".join(truth) or "none"),
+        ]
 
 
 class DepthDigest:

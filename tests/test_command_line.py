@@ -160,6 +160,10 @@ WRONG = {
         *("-o", "{empty}/x"),
     ),
     "no method twice": ("compare", "{recording}", "--methods", "tracker,tracker", "-o", "{empty}/x"),
+    "nothing to report": ("report", "{empty}"),
+    "no page": ("report", "{recording}", "-o", "{empty}/page.pdf"),
+    "no video": ("report", "{recording}", "--video", "{empty}/video.avi"),
+    "a video of no recording": ("report", "{empty}", "--video", "{empty}/video.gif"),
     "motions that are not there": ("compare", "{recording}", "--motions", "mine={empty}", "-o", "{empty}/x"),
 }
 
@@ -193,6 +197,7 @@ def test_wrong_input_gets_one_line_and_status_2(
         "table1",
         "figure",
         "compare",
+        "report",
         "doctor",
     ],
 )

@@ -1,4 +1,4 @@
-"""The layers: `recording` knows nobody, `simulator` and `algorithm` only it, `evaluation` these, `commands` all."""
+"""The layers: `recording` knows nobody, `simulator` and `algorithm` only it; each later one knows those before it."""
 
 import ast
 from pathlib import Path
@@ -11,7 +11,8 @@ MAY_IMPORT = {
     "simulator": {"recording", "scenes"},
     "algorithm": {"recording"},
     "evaluation": {"recording", "simulator", "algorithm"},
-    "commands": {"recording", "simulator", "algorithm", "evaluation"},
+    "viewer": {"recording", "simulator", "algorithm", "evaluation"},
+    "commands": {"recording", "simulator", "algorithm", "evaluation", "viewer"},
 }
 LAYERS = {*MAY_IMPORT, "scenes", "unocclude"}
 

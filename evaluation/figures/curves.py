@@ -10,9 +10,10 @@ from scipy.optimize import linear_sum_assignment
 from algorithm.intra import aligned
 from algorithm.representative import Curve
 from algorithm.trajectories import Trajectories
-from evaluation.figures.panels import ELEVATION, Plane, as_metres, draw_dots, on_plane
+from evaluation.figures.panels import ELEVATION, Plane, as_metres, on_plane
 from evaluation.figures.stages import Pair, Solved
 from evaluation.figures.style import COLOURS, COLUMN_INCHES, FAINT, PAGE_INCHES, TRUTH, colour_of
+from recording.drawing import draw_dots
 from recording.motions import INTRA, NOISE, Representative
 
 _RED, _BLACK = COLOURS[1], COLOURS[7]

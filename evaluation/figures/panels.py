@@ -4,16 +4,15 @@ from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 from matplotlib.axes import Axes
 
-from evaluation.figures.style import FAINT, colour_of, colours_of
+from evaluation.figures.style import colour_of, colours_of
 from recording.camera import Camera, transformed
+from recording.drawing import draw_dots, draw_stretches
 from recording.motions import NOISE, Motions, Representative
 from recording.recording import Recording
 
-MOST_DOTS = 60_000
-"""Points drawn in one panel at the most."""
 COMPLETED, OBSERVED = 0.25, 0.9
 """How opaque points are."""
 
@@ -22,21 +21,6 @@ def moments_of(frames: int, count: int, *, margin: float = 0.06) -> list[int]:
     """Up to so many frames spread over a recording, its ends left out."""
     share = np.linspace(margin, 1 - margin, count)
     return [int(frame) for frame in np.unique((share * (frames - 1)).round())]
-
-
-def as_picture(axes: Axes, camera: Camera) -> None:
-    """Make the axes the camera's picture."""
-    axes.set(xlim=(0, camera.width), ylim=(camera.height, 0), aspect="equal", xticks=[], yticks=[])
-    for side in axes.spines.values():
-        side.set(visible=True, color=FAINT)
-
-
-def draw_dots(axes: Axes, place: np.ndarray, colours: np.ndarray | str, *, size: float, alpha: float) -> None:
-    """Points in order; of too many every so-manieth. They are pixels in an SVG too."""
-    step = -(-len(place) // MOST_DOTS) or 1
-    chosen = colours if isinstance(colours, str) else colours[::step]
-    place = place[::step]
-    axes.scatter(place[:, 0], place[:, 1], s=size, c=chosen, alpha=alpha, linewidths=0, rasterized=True)
 
 
 def draw_places(
@@ -67,14 +51,6 @@ def draw_segments(axes: Axes, camera: Camera, motions: Motions, *, size: float, 
 def draw_curve(axes: Axes, place: Float[np.ndarray, "moment 2"], curve: Representative, *, width: float = 1.5) -> None:
     """A curve: full where it was observed, dotted where it was completed."""
     draw_stretches(axes, place, curve.observed, colour=colour_of(curve.motion), width=width)
-
-
-def draw_stretches(
-    axes: Axes, place: Float[np.ndarray, "moment 2"], observed: Bool[np.ndarray, "moment"], *, colour: str, width: float
-) -> None:
-    """A line: full where it was observed, dotted elsewhere."""
-    axes.plot(*place.T, color=colour, linewidth=0.8 * width, linestyle=":")
-    axes.plot(*np.where(observed[:, None], place, np.nan).T, color=colour, linewidth=width)
 
 
 Plane = tuple[int, int]

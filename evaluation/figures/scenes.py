@@ -11,7 +11,6 @@ from matplotlib.figure import Figure
 from evaluation.figures.panels import (
     as_metres,
     draw_curve,
-    draw_dots,
     draw_points,
     draw_segments,
     on_plane,
@@ -19,6 +18,7 @@ from evaluation.figures.panels import (
 from evaluation.figures.stages import Solved
 from evaluation.figures.style import DEPTH, FAINT, PAGE_INCHES, TRUTH
 from evaluation.figures.views import View
+from recording.drawing import draw_dots
 from recording.motions import NOISE, Motions
 
 _LINES = 1500

@@ -6,13 +6,14 @@ Followed trajectories, the curve of each segment, and the polynomials that could
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import get_args
 
 import numpy as np
 from jaxtyping import Float, Int
 
 from algorithm.inter import HIGHEST_DEGREE, LOWEST_DEGREE, Polynomial, fitted_polynomial
 from algorithm.representative import Curve, representative
-from algorithm.settings import Settings
+from algorithm.settings import Preset, Settings
 from algorithm.static import Background, background
 from algorithm.trajectories import Trajectories
 from evaluation.figures.panels import ELEVATION, Plane, in_camera, moments_of, plane_of
@@ -58,8 +59,10 @@ class Solved:
 
     @cached_property
     def settings(self) -> Settings:
-        """What it was solved with."""
-        return validated(Settings, self.motions.making.settings, source="settings of the motions")
+        """What it was solved with; the default ones where something else solved it."""
+        known = self.motions.making.settings
+        ours = known.get("preset") in get_args(Preset)
+        return validated(Settings, known, source="settings of the motions") if ours else Settings()
 
     @property
     def representatives(self) -> tuple[Representative, ...]:

@@ -21,10 +21,12 @@ _LISTED = 10
 def tuning_text(sweep: Sweep, attempts: Sequence[Attempt]) -> str:
     """The best attempts and the front, as a table."""
     listed = [one for number, one in enumerate(attempts) if one.front or number < _LISTED]
-    rows = [[one.number, one.error, one.seconds, "*" * one.front, *map(_cell, one.values.values())] for one in listed]
-    table = tabulate(
-        rows, headers=["trial", "error", "seconds", "front", *sweep.axes], tablefmt="plain", floatfmt=".3f"
-    )
+    rows = [
+        [str(one.number), f"{one.error:.4f}", f"{one.seconds:.2f}", "*" * one.front, *map(_cell, one.values.values())]
+        for one in listed
+    ]
+    headers = ["trial", "error", "seconds", "front", *sweep.axes]
+    table = tabulate(rows, headers=headers, tablefmt="plain", disable_numparse=True, stralign="right")
     return (
         f"{sweep.name}: {len(attempts)} trials, trial 0 has the values of preset {sweep.preset}\n\n{table}\n\n"
         "error: 1 - (HOTA + recall) / 2, mean over the recordings. seconds: of one recording. front: no trial has a "

@@ -129,12 +129,26 @@ def test_margins_agree_with_their_definition(seed: int) -> None:
     rivals = (found.before[:, None] == found.before) | (found.after[:, None] == found.after)
     rivals &= found.chosen & ~np.eye(len(gain), dtype=bool)
     rise = gain - rivals @ gain  # Of taking a link and dropping its rivals.
+    for link in np.flatnonzero(rivals.sum(axis=1) == 2):  # Whom they leave alone may find each other.
+        crossing = (found.before == found.before[rivals[link] & (found.after == found.after[link])]) & (
+            found.after == found.after[rivals[link] & (found.before == found.before[link])]
+        )
+        rise[link] += min(0.0, gain[crossing].sum())
     for link, chosen in enumerate(found.chosen):
         exchanges = rise[~found.chosen & rivals[:, link]]
         expected = min([-gain[link], *exchanges]) if chosen else -rise[link]
         assert found.margin[link] == pytest.approx(expected)
     assert (found.margin[found.chosen] >= 0).all()
     assert (found.margin[~found.chosen] <= 1e-9).all()
+
+
+def test_two_who_may_have_changed_places_are_doubtful() -> None:
+    before, after = np.array([0, 0, 1, 1]), np.array([2, 3, 2, 3])
+    possible = Candidates(before=before, after=after, price=np.array([0.0, 0.2, 0.1, 0.0]), restlessness=np.ones(4))
+    lonely = Standing(begin=np.full(4, 6.0), end=np.full(4, 6.0), weight=np.ones(4))
+    found = linked(possible, lonely)
+    assert found.chosen.tolist() == [True, False, False, True]
+    assert found.margin == pytest.approx([0.3, -0.3, -0.3, 0.3])
 
 
 def test_confidence_rises_with_the_margin() -> None:

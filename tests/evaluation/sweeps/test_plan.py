@@ -4,10 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from algorithm.settings import Settings
+from algorithm.settings import Settings, preset_settings
 from evaluation.sweeps.plan import Sweep, load_sweep, points_of, settings_at
 from recording.errors import InputError
 
+SWEEPS = Path(__file__).parents[3] / "sweeps"
 HEAD = 'name = "some"\nscenes = ["wall"]\n'
 
 
@@ -109,3 +110,12 @@ def test_what_is_wrong_is_said_in_one_sentence(text: str, message: str, tmp_path
         load_sweep(path)
     assert str(raised.value).startswith(f"{path}: ")
     assert "\n" not in str(raised.value)
+
+
+@pytest.mark.parametrize("path", sorted(SWEEPS.glob("*.toml")), ids=lambda path: path.stem)
+def test_the_sweeps_that_we_ship_ask_for_settings_that_there_are(path: Path) -> None:
+    sweep = load_sweep(path)
+    assert max(sweep.seeds) < 1000  # For development.
+    for name, axis in sweep.axes.items():
+        if axis.first is not None and axis.last is not None:
+            assert axis.first <= getattr(preset_settings(sweep.preset), name) <= axis.last

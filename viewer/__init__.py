@@ -1,0 +1,1 @@
+"""The interactive viewer: a recording and its motions in a browser, in three dimensions over time."""

@@ -1,0 +1,102 @@
+"""The colours of points: by motion, segment, error or depth, in the project's palette."""
+
+from dataclasses import dataclass
+from functools import cache
+from typing import Literal, get_args
+
+import numpy as np
+from jaxtyping import Bool, Float, Int, UInt8
+from matplotlib import colormaps
+from matplotlib.colors import to_rgb
+
+from recording.motions import NOISE
+from recording.palette import COLOURS, DEPTH, FAINT, TRUTH
+from viewer.answer import Answer
+from viewer.clouds import Cloud
+
+Colouring = Literal["motion", "segment", "error", "depth"]
+COLOURINGS: tuple[Colouring, ...] = get_args(Colouring)
+LARGEST_ERROR_M = 0.5
+"""Errors of this and more have the last colour."""
+ERROR = "cividis"
+"""Colours of errors: small ones are dark."""
+_PALE = 0.75
+"""How far what is not picked goes towards white."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shades:
+    """What decides on the colours of points."""
+
+    colouring: Colouring
+    depth_m: tuple[float, float]
+    """The nearest and the farthest depth that differ in colour."""
+    picked: int | None = None
+    """The motion that keeps its colours while all others pale; None = all keep theirs."""
+
+
+@cache
+def rgb(colour: str) -> UInt8[np.ndarray, "3"]:
+    """A colour as the browser wants it."""
+    return np.round(255 * np.array(to_rgb(colour))).astype(np.uint8)
+
+
+def numbered(number: Int[np.ndarray, "point"]) -> UInt8[np.ndarray, "point 3"]:
+    """The colours of motions or segments, by turns as in all pictures; noise is faint."""
+    palette = np.stack([rgb(colour) for colour in (*COLOURS, FAINT)])
+    return palette[np.where(number == NOISE, len(COLOURS), number % len(COLOURS))]
+
+
+def scaled(value: Float[np.ndarray, "point"], low: float, high: float, scale: str) -> UInt8[np.ndarray, "point 3"]:
+    """The colours of numbers between two bounds; NaN is faint."""
+    table = (255 * colormaps[scale](np.arange(256))[:, :3]).round().astype(np.uint8)
+    table = np.concatenate([table, rgb(FAINT)[None]])
+    share = np.clip((value - low) / max(high - low, 1e-9), 0.0, 1.0)
+    return table[np.where(np.isfinite(share), np.nan_to_num(share) * 255, 256).astype(np.intp)]
+
+
+def pale(colours: UInt8[np.ndarray, "point 3"], where: Bool[np.ndarray, "point"]) -> UInt8[np.ndarray, "point 3"]:
+    """The colours, some of them made pale."""
+    light = (colours + _PALE * (255.0 - colours)).astype(np.uint8)
+    return np.where(where[:, None], light, colours)
+
+
+def bare_colours(cloud: Cloud, shades: Shades, *, truth: bool) -> UInt8[np.ndarray, "point 3"]:
+    """The colours of points that belong to no motion: by depth, else as the truth's or faint."""
+    if shades.colouring == "depth":
+        return scaled(cloud.depth_m, *shades.depth_m, DEPTH)
+    return np.tile(rgb(TRUTH if truth else FAINT), (len(cloud.points), 1))
+
+
+def motion_colours(cloud: Cloud, answer: Answer, shades: Shades) -> UInt8[np.ndarray, "point 3"]:
+    """The colours of points of motions; in errors what has none that is known is faint."""
+    if cloud.row is None:
+        raise ValueError("expected a cloud of rows of motions")
+    motions, row = answer.motions, cloud.row
+    if shades.colouring == "depth":
+        colours = scaled(cloud.depth_m, *shades.depth_m, DEPTH)
+    elif shades.colouring == "error":
+        known = answer.judgement.error_m[row] if answer.judgement else np.full(len(row), np.nan, np.float32)
+        colours = scaled(known, 0.0, LARGEST_ERROR_M, ERROR)
+    else:
+        colours = numbered(motions.motion[row] if shades.colouring == "motion" else motions.segment[row])
+    return colours if shades.picked is None else pale(colours, motions.motion[row] != shades.picked)
+
+
+def legend(shades: Shades) -> str:
+    """What the colours mean, as HTML."""
+    if shades.colouring in ("motion", "segment"):
+        chips = "".join(f'<span style="background:{colour};{_CHIP}"></span>' for colour in COLOURS)
+        return f'<div style="{_LEGEND}">{chips} by turns; <span style="background:{FAINT};{_CHIP}"></span> noise</div>'
+    scale, low, high = (DEPTH, *shades.depth_m) if shades.colouring == "depth" else (ERROR, 0.0, 100 * LARGEST_ERROR_M)
+    unit, digits, more = ("m", 1, "") if shades.colouring == "depth" else ("cm", 0, " and more; faint: not hidden")
+    stops = ",".join(
+        "rgb({},{},{})".format(*colour) for colour in scaled(np.linspace(0, 1, 9), 0.0, 1.0, scale).tolist()
+    )
+    bar = f'<span style="background:linear-gradient(to right,{stops});{_BAR}"></span>'
+    return f'<div style="{_LEGEND}">{low:.{digits}f} {bar} {high:.{digits}f} {unit}{more}</div>'
+
+
+_LEGEND = "font-size:0.8em;padding:0 0.9em 0.3em"
+_CHIP = "display:inline-block;width:0.9em;height:0.9em;margin-right:2px;vertical-align:middle"
+_BAR = "display:inline-block;width:8em;height:0.8em;vertical-align:middle"

@@ -1,0 +1,1 @@
+"""The panels beside the scene, one file a panel."""
