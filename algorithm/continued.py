@@ -1,6 +1,7 @@
 """Steps 7 to 9 of the default: segments linked over the whole recording into motions, and these completed."""
 
 from collections.abc import Iterable
+from functools import partial
 
 import numpy as np
 from jaxtyping import Bool, Int
@@ -17,7 +18,7 @@ from algorithm.guidance import UNGUIDED, Guidance, joined
 from algorithm.guided import guided
 from algorithm.linking import confidences, is_scrap, standings
 from algorithm.restlessness import restless_path
-from algorithm.result import Motion, Solution
+from algorithm.result import Keep, Motion, Solution, made_now
 from algorithm.segment_frames import SegmentFrames, segment_frames
 from algorithm.settings import Settings
 from algorithm.stragglers import gathered
@@ -44,6 +45,7 @@ def continued(
     settings: Settings,
     linker: Linker | None,
     guidance: Guidance = UNGUIDED,
+    keep: Keep = made_now,
 ) -> Solution:
     """The motions: segments linked, stragglers gathered, and every point's places while it was hidden."""
     rows = _rows(followed, segments)
@@ -59,13 +61,15 @@ def continued(
     motion = _without_few(motion, segments, settings)
     rows = rows.renamed(motion)
     of_trajectory = np.append(motion, -1)[segments]  # Noise, -1, stays noise.
-    motions = tuple(
-        _motion(followed, segments, of_trajectory == number, one, settings) for number, one in enumerate(rows.singles())
-    )
+    motions = []
+    for number, one in enumerate(rows.singles()):
+        members = of_trajectory == number
+        own = segments[members]
+        motions.append(keep(members, own, partial(_motion, followed, own, members, one, settings)))
     return Solution(
         trajectories=followed.trajectories,
         segments=segments,
-        motions=motions,
+        motions=tuple(motions),
         links=links,
         alternatives=alternatives,
         events=events_between(
@@ -130,13 +134,12 @@ def _rows(followed: Followed, segments: Segments) -> SegmentFrames:
 
 def _motion(
     followed: Followed,
-    segments: Segments,
+    own: Int[np.ndarray, "member"],
     members: Bool[np.ndarray, "trajectory"],
     rows: SegmentFrames,
     settings: Settings,
 ) -> Motion:
     curve = restless_path(rows, fps=followed.fps, calmest=settings.restlessness)
-    own = segments[members]
     completion = completed(
         followed.trajectories.chosen(members),
         own,

@@ -7,11 +7,15 @@ from typing import Any
 
 import numpy as np
 import pyarrow as pa
+from jaxtyping import Bool, Int
 from pyarrow import feather
 
+from algorithm.completion import Completion
 from algorithm.followed import Followed
 from algorithm.moving_flows import MovingFlows
 from algorithm.patches import Patches
+from algorithm.representative import Curve
+from algorithm.result import Motion
 from algorithm.stages import Flowing, Grouped, Observed
 from algorithm.trajectories import Trajectories
 from recording.cache import Form
@@ -80,6 +84,38 @@ def observed_form(recording: Recording) -> Form[Observed]:
 def grouped_form(observed: Observed) -> Form[Grouped]:
     """How the third stage's result is kept, without that of the second."""
     return Form(read=partial(_read_grouped, observed), write=_write_grouped)
+
+
+def motion_form(members: Bool[np.ndarray, "trajectory"], segments: Int[np.ndarray, "member"]) -> Form[Motion]:
+    """How a motion of some members, whose segments are told, is kept: without these."""
+    return Form(read=partial(_read_motion, members, segments), write=_write_motion)
+
+
+def _write_motion(motion: Motion, path: Path) -> None:
+    """A table of one row, whose entries are lists."""
+    curve, completion = motion.curve, motion.completion
+    columns = {f"curve_{axis}": curve.position[:, number] for number, axis in enumerate("xyz")}
+    columns |= {axis: completion.position[:, number] for number, axis in enumerate("xyz")}
+    columns |= {name: getattr(completion, name) for name in ("trajectory", "frame", "source", "confidence")}
+    columns |= {"points": curve.points, "before": completion.joins[0], "after": completion.joins[1]}
+    _write({name: [values] for name, values in columns.items()}, {"first": int(curve.first)}, path)
+
+
+def _read_motion(members: Bool[np.ndarray, "trajectory"], segments: Int[np.ndarray, "member"], path: Path) -> Motion:
+    lists, known = _read(path)
+    columns = {name: np.array(values[0]) for name, values in lists.items()}
+    curve = np.stack([columns[f"curve_{axis}"] for axis in "xyz"], axis=1)
+    completion = Completion(
+        position=np.stack([columns[axis] for axis in "xyz"], axis=1),
+        joins=(columns["before"], columns["after"]),
+        **{name: columns[name] for name in ("trajectory", "frame", "source", "confidence")},
+    )
+    return Motion(
+        segments=tuple(np.unique(segments).tolist()),
+        curve=Curve(first=known["first"], position=curve, points=columns["points"]),
+        members=members,
+        completion=completion,
+    )
 
 
 def _columns(trajectories: Trajectories) -> dict[str, np.ndarray]:

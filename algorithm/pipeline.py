@@ -15,7 +15,7 @@ from algorithm.following import Tolerances, followed
 from algorithm.given import NOTHING_GIVEN, Given, Linker, Segments
 from algorithm.matching import Pairs, matched_pixels
 from algorithm.patches import patches
-from algorithm.result import Solution, motions_of
+from algorithm.result import Keep, Solution, made_now, motions_of
 from algorithm.scene_flow import FlowsBetween, Footage, ThereAndBack, flows_between
 from algorithm.settings import Settings
 from algorithm.spacing import mean_point_spacing
@@ -166,11 +166,12 @@ def completed_motions(
     settings: Settings,
     linker: Linker | None = None,
     corrections: Corrections | None = None,
+    keep: Keep = made_now,
 ) -> Solution:
     """Segments joined into motions, and every point's places while it was hidden (steps 7 to 9)."""
     if corrections is not None:
         mended = corrected(followed, segments, settings, corrections)
-        return continued(followed, mended.segments, settings, linker, mended.guidance)
+        return continued(followed, mended.segments, settings, linker, mended.guidance, keep)
     if settings.completing == "continuation":
         return continued(followed, segments, settings, linker)
     reach = Reach(

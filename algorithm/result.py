@@ -1,5 +1,6 @@
 """The solver's answer as the rows that `motions.parquet` holds."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,6 +26,17 @@ class Motion:
     """Which trajectories belong to it."""
     completion: Completion
     """In numbers of the members."""
+
+
+Keep = Callable[[Bool[np.ndarray, "trajectory"], Int[np.ndarray, "member"], Callable[[], Motion]], Motion]
+"""Gives the motion of some members, whose segments are told: made now by what is told last, or at another time."""
+
+
+def made_now(
+    _members: Bool[np.ndarray, "trajectory"], _segments: Int[np.ndarray, "member"], make: Callable[[], Motion]
+) -> Motion:
+    """The motion, made now."""
+    return make()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

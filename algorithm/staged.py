@@ -1,10 +1,15 @@
 """Algorithm 1 in four stages, each made at most once where a cache keeps what it made."""
 
+import hashlib
+from collections.abc import Callable
 from dataclasses import dataclass, field
+
+import numpy as np
+from jaxtyping import Bool, Int
 
 from algorithm.corrections import check_corrections
 from algorithm.given import NOTHING_GIVEN, Given
-from algorithm.kept_stages import FLOWING, grouped_form, observed_form
+from algorithm.kept_stages import FLOWING, grouped_form, motion_form, observed_form
 from algorithm.moving_flows import moving_flows
 from algorithm.pipeline import (
     completed_motions,
@@ -15,13 +20,13 @@ from algorithm.pipeline import (
     trajectories_along,
     with_patches,
 )
-from algorithm.result import motions_of
+from algorithm.result import Motion, motions_of
 from algorithm.scene_flow import flows_between
 from algorithm.settings import Settings
 from algorithm.spacing import mean_point_spacing
 from algorithm.stages import Flowing, Grouped, Observed, Stage, keys_of, readable, total_seconds
 from algorithm.stopwatch import Stopwatch
-from recording.cache import Cache, kept
+from recording.cache import Cache, kept, key_of
 from recording.corrections import Corrections
 from recording.motions import Motions
 from recording.recording import Recording
@@ -83,10 +88,25 @@ class Course:
         together, watch = grouped or self.grouped(), Stopwatch()
         with watch.stage("completion"):
             solution = completed_motions(
-                together.followed, together.segments, self.settings, self.given.links, self.corrections
+                together.followed,
+                together.segments,
+                self.settings,
+                self.given.links,
+                self.corrections,
+                self._kept_motion,
             )
         seconds = total_seconds(together.seconds, watch.by_stage())
         return motions_of(solution, making_of(self.digest, self.settings, seconds, self.corrections))
+
+    def _kept_motion(
+        self, members: Bool[np.ndarray, "trajectory"], segments: Int[np.ndarray, "member"], make: Callable[[], Motion]
+    ) -> Motion:
+        """While somebody corrects by hand, motions are kept: a correction changes a few of many."""
+        if self.corrections is None:
+            return make()
+        who = hashlib.sha256(np.flatnonzero(members).tobytes() + segments.tobytes()).hexdigest()
+        key = key_of("motion", {"before": self.keys["motions"], "who": who})
+        return kept(self._cache("motions"), key, make, motion_form(members, segments))
 
     def _made_flowing(self) -> Flowing:
         watch, settings = Stopwatch(), readable(self.settings, "flow")
@@ -113,5 +133,5 @@ class Course:
 
     def _cache(self, stage: Stage) -> Cache | None:
         """The cache, unless something was given to the stage or to one before it: no key says what."""
-        mended = self.given.flow is not None or (self.given.segments is not None and stage == "segments")
+        mended = self.given.flow is not None or (self.given.segments is not None and stage in ("segments", "motions"))
         return None if mended else self.cache

@@ -138,13 +138,11 @@ class Motions:
         from recording.drawing import draw_ways, new_axes  # noqa: PLC0415 - matplotlib is slow to import.
 
         curves = self.representatives or mean_places(self)
-        places, names, plane = _seen_from(camera, [curve.position for curve in curves])
+        places, labels = _from_above(camera, [curve.position for curve in curves])
+        ways = [(curve.motion, place, curve.observed) for curve, place in zip(curves, places, strict=True)]
         drawn = axes or new_axes(shape=0.6)
-        draw_ways(
-            drawn,
-            [(curve.motion, place[:, plane], curve.observed) for curve, place in zip(curves, places, strict=True)],
-        )
-        drawn.set(xlabel=names[plane[0]], ylabel=names[plane[1]])
+        draw_ways(drawn, ways)
+        drawn.set(xlabel=labels[0], ylabel=labels[1])
         return drawn
 
     def __repr__(self) -> str:
@@ -198,12 +196,14 @@ def _mean_place(motions: Motions, motion: int) -> Representative:
     return Representative(motion=motion, frame=frame.astype(np.int32), position=position, observed=observed)
 
 
-def _seen_from(
+def _from_above(
     camera: Camera | None, places: list[Float[np.ndarray, "moment 3"]]
-) -> tuple[list[Float[np.ndarray, "moment 3"]], tuple[str, str, str], list[int]]:
-    """Places in the axes that they are drawn in, the names of these, and the two that are shown."""
+) -> tuple[list[Float[np.ndarray, "moment 2"]], tuple[str, str]]:
+    """Places on the two axes that they are drawn on, and the names of these."""
     if camera is not None:
-        names = ("right of the camera [m]", "below the camera [m]", "before the camera [m]")
-        return [transformed(np.linalg.inv(camera.world_from_camera), each) for each in places], names, [0, 2]
-    reach = np.ptp(np.concatenate(places), axis=0) if places else np.array([1.0, 1.0, 0.0])
-    return places, ("x [m]", "y [m]", "z [m]"), sorted(np.argsort(-reach, kind="stable")[:2].tolist())
+        camera_from_world = np.linalg.inv(camera.world_from_camera)
+        aside_ahead = [transformed(camera_from_world, place)[:, [0, 2]] for place in places]
+        return aside_ahead, ("right of the camera [m]", "before the camera [m]")
+    reach = np.ptp(np.concatenate(places), axis=0) if places else np.zeros(3)
+    first, second = sorted(np.argsort(-reach, kind="stable")[:2].tolist())
+    return [place[:, [first, second]] for place in places], (f"{'xyz'[first]} [m]", f"{'xyz'[second]} [m]")
