@@ -27,7 +27,7 @@ SAID = {
     ],
     "5_sweep": [
         r"0.25 s: . of 2 found, recall 0\.",
-        "1.50 s: 2 of 2 found, recall 1.00",
+        "1.00 s: 2 of 2 found, recall 1.00",
         r"the longest hole lasts 0\.\d\d s",
     ],
 }
