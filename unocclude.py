@@ -17,9 +17,10 @@ try:
 
     from algorithm.settings import Settings, preset_settings
     from algorithm.staged import solve
-    from commands import drawing, judging, making, reporting, solving, starting, sweeping, viewing
+    from commands import drawing, exporting, importing, judging, making, reporting, solving, starting, sweeping, viewing
     from commands.common import run
     from evaluation.scores import evaluate
+    from exporting.export import export
     from recording.cache import Cache
     from recording.camera import Camera
     from recording.causes import causes_of
@@ -58,6 +59,7 @@ __all__ = [
     "causes_of",
     "depth_recording",
     "evaluate",
+    "export",
     "flow_between",
     "generate",
     "load_corrections",
@@ -90,7 +92,7 @@ app.command(starting.demo_command, name="demo")
 app.command(making.simulate_command, name="simulate", help_epilogue=making.SCENES_HELP)
 app.command(making.generate_command, name="generate", help_epilogue=making.FAMILIES_HELP)
 app.command(making.resense_command, name="resense")
-app.command(making.import_command, name="import")
+app.command(importing.import_command, name="import", help_epilogue=importing.EXAMPLES_HELP)
 app.command(solving.solve_command, name="solve", help_epilogue=solving.SETTINGS_HELP)
 app.command(judging.evaluate_command, name="evaluate")
 app.command(judging.verify_command, name="verify")
@@ -103,6 +105,7 @@ app.command(sweeping.tune_command, name="tune")
 app.command(drawing.figure_command, name="figure", help_epilogue=drawing.FIGURES_HELP)
 app.command(viewing.view_command, name="view")
 app.command(reporting.report_command, name="report")
+app.command(exporting.export_command, name="export")
 app.command(starting.doctor_command, name="doctor")
 
 

@@ -15,7 +15,7 @@ from algorithm.followed import Followed
 from algorithm.given import Linker, Segments
 from algorithm.grouping import groups
 from algorithm.guidance import UNGUIDED, Guidance, joined
-from algorithm.guided import guided
+from algorithm.guided import guided, spans
 from algorithm.linking import confidences, is_scrap, standings
 from algorithm.restlessness import restless_path
 from algorithm.result import Keep, Motion, Solution, made_now
@@ -83,12 +83,10 @@ def links_between(
 ) -> tuple[tuple[Link, ...], tuple[Link, ...]]:
     """The links of the likeliest assignment (step 9), and those that might stand in their place."""
     flown = guidance.allowed(flights(rows, guidance.forced_links(), fps=followed.fps), rows.count)
-    flown = (*flown, *guidance.beside(rows, is_scrap(rows, settings)))
     known, unit, first, last = _ends(rows, _joined(flown, rows.count), settings)
     possible = candidates(known, settings, fps=followed.fps)
     standing = standings(known, followed.camera, settings, frames=followed.frames, fps=followed.fps)
-    begin = known.frame[np.searchsorted(known.segment, np.arange(known.count))]
-    found = guided(possible, standing, guidance.renamed(unit), begin)
+    found = guided(possible, standing, guidance.renamed(unit), spans(known))
     confidence = confidences(found)
     every = [
         Link(before=int(last[before]), after=int(first[after]), confidence=float(sure), chosen=bool(chosen))

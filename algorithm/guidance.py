@@ -4,17 +4,13 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Float, Int
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from algorithm.segment_frames import SegmentFrames
 from recording.motions import Link
 
 Pairs = Sequence[tuple[int, int]]
-_OVERLAP = 0.5
-"""Of two segments that are one object and share a larger part of the shorter one's time, neither goes on as the other:
-they are beside each other."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,26 +44,10 @@ class Guidance:
         """The links that are made whatever else is known."""
         return tuple(Link(before=a, after=b, confidence=1.0) for a, b in self.force)
 
-    def beside(self, rows: SegmentFrames, scrap: Bool[np.ndarray, "segment"]) -> tuple[Link, ...]:
-        """The links between what is one object without the one going on as the other.
-
-        They are seen at the same time, or one of them is a scrap, which goes on as nothing.
-        """
-        if not self.bound:
-            return ()
-        bounds = np.searchsorted(rows.segment, np.arange(rows.count + 1))
-        first, last = rows.frame[bounds[:-1]], rows.frame[bounds[1:] - 1]
-        frames = last - first + 1
-        found = []
-        for pair in self.bound:
-            a, b = sorted(pair, key=lambda segment: (first[segment], segment))
-            common = min(last[a], last[b]) - first[b] + 1
-            if scrap[a] or scrap[b] or common > _OVERLAP * min(frames[a], frames[b]):
-                found.append(Link(before=a, after=b, confidence=1.0))
-        return tuple(found)
-
     def allowed(self, links: Iterable[Link], count: int) -> tuple[Link, ...]:
         """Those of the links, in their order, that are not forbidden and join nothing that is different."""
+        if not (self.different or self.forbid):
+            return tuple(links)
         kept: list[Link] = []
         for link in links:
             trial = joined([*self.bound, *((each.before, each.after) for each in (*kept, link))], count)

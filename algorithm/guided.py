@@ -12,6 +12,7 @@ from scipy.sparse.csgraph import breadth_first_order
 from algorithm.continuation import Candidates
 from algorithm.guidance import Guidance, Pairs, joined
 from algorithm.linking import Links, Standing, gains, linked
+from algorithm.segment_frames import SegmentFrames
 from recording.errors import InputError
 
 _FORCED = -1e5
@@ -20,25 +21,33 @@ _DEAR = 50.0
 """The price of a link that is no candidate, where one of several ways is chosen."""
 _ANY_RESTLESSNESS = 1.0
 """Of a link that is no candidate, m^2 / s^3: it is made whatever it is."""
+_OVERLAP = 0.5
+"""Who shares a larger part of the shorter one's time with another segment does not go on as it."""
 
 
-def guided(possible: Candidates, standing: Standing, guidance: Guidance, begin: Int[np.ndarray, "segment"]) -> Links:
-    """The assignment of least total price that respects the guidance; `begin` is the first frame of each segment.
+def guided(possible: Candidates, standing: Standing, guidance: Guidance, span: Int[np.ndarray, "segment 2"]) -> Links:
+    """The assignment of least total price that respects the guidance; `span` is each segment's first and last frame.
 
     Segments that are the same are linked along the cheapest way from the one to the other, over others where that is
-    likelier. Where segments that are different are in one motion, the link between them that is missed least is
-    forbidden, until none are.
+    likelier; such as are seen at the same time, beside each other, need no link. Where segments that are different are
+    in one motion, the link between them that is missed least is forbidden, until none are.
     """
     if guidance.silent:
         return linked(possible, standing)
     barred = set(guidance.forbid)
     while True:
-        ways = _Ways(possible=possible, gain=gains(possible, standing), guidance=guidance, begin=begin, barred=barred)
+        ways = _Ways(possible=possible, gain=gains(possible, standing), guidance=guidance, span=span, barred=barred)
         found = linked(_priced(possible, ways.found(), barred - set(guidance.force)), standing)
-        offending = _offending(found, guidance, len(begin))
+        offending = _offending(found, guidance, len(span))
         if offending is None:
             return found
         barred.add(offending)
+
+
+def spans(rows: SegmentFrames) -> Int[np.ndarray, "segment 2"]:
+    """First and last frame of each segment."""
+    bounds = np.searchsorted(rows.segment, np.arange(rows.count + 1))
+    return np.stack([rows.frame[bounds[:-1]], rows.frame[bounds[1:] - 1]], axis=1)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -48,7 +57,7 @@ class _Ways:
     possible: Candidates
     gain: Float[np.ndarray, "link"]
     guidance: Guidance
-    begin: Int[np.ndarray, "segment"]
+    span: Int[np.ndarray, "segment 2"]
     barred: set[tuple[int, int]]
     onward: dict[int, int] = field(default_factory=dict)
     """What each segment goes on as."""
@@ -58,13 +67,13 @@ class _Ways:
         """The links that are forced, and those along the ways between segments that are the same."""
         for a, b in self.guidance.force:
             self._make(a, b)
-        group = joined(self.guidance.bound, len(self.begin))
-        several = np.flatnonzero(np.bincount(group) > 1) if len(group) else []
+        group = joined(self.guidance.bound, len(self.span))
+        several = np.flatnonzero(np.bincount(group, minlength=1) > 1).tolist()
         for number in several:
             members = np.flatnonzero(group == number)
             shunned = self._unlike(group, number)
-            for a, b in pairwise(members[np.argsort(self.begin[members], kind="stable")].tolist()):
-                if not self._leads(a, b):
+            for a, b in pairwise(members[np.argsort(self.span[members, 0], kind="stable")].tolist()):
+                if not (self._leads(a, b) or self._beside(a, b)):
                     for link in self._cheapest(a, b, shunned):
                         self._make(*link)
         return tuple(self.onward.items())
@@ -75,8 +84,14 @@ class _Ways:
         others = ends[(ends == number).any(axis=1)]
         return set(np.flatnonzero(np.isin(group, others[others != number])).tolist())
 
+    def _beside(self, a: int, b: int) -> bool:
+        """Whether two segments, of which the first begins first, share most of the shorter one's time."""
+        (_, last), (begin, end) = self.span[[a, b]].tolist()
+        shorter = int(np.diff(self.span[[a, b]]).min()) + 1
+        return bool(min(last, end) - begin + 1 > _OVERLAP * shorter)
+
     def _make(self, a: int, b: int) -> None:
-        if self._free(a, b):
+        if self._free(a, b) and not self._leads(b, a):
             self.onward[a], self.back[b] = b, a
 
     def _free(self, a: int, b: int) -> bool:
@@ -92,7 +107,7 @@ class _Ways:
         """The links of the cheapest way from one segment to another, none where there is none."""
         cost, comes_from = {a: 0.0}, {}
         steps = zip(self.possible.before.tolist(), self.possible.after.tolist(), self.gain.tolist(), strict=True)
-        edges = sorted([*steps, (a, b, _DEAR)], key=lambda edge: self.begin[edge[0]])  # They lead on in time.
+        edges = sorted([*steps, (a, b, _DEAR)], key=lambda edge: self.span[edge[0], 0])  # They lead on in time.
         for one, other, gain in edges:
             open_ = (one, other) not in self.barred and self._free(one, other) and other not in shunned
             if open_ and one in cost and cost[one] + gain < cost.get(other, np.inf):
@@ -107,8 +122,8 @@ class _Ways:
 
 def _priced(possible: Candidates, forced: Pairs, barred: set[tuple[int, int]]) -> Candidates:
     """The candidates with the forced ones among them, at a price that none outweighs, and without the barred ones."""
-    known = list(zip(possible.before.tolist(), possible.after.tolist(), strict=True))
-    missing = np.array([pair for pair in forced if pair not in set(known)], int).reshape(-1, 2)
+    known = dict.fromkeys(zip(possible.before.tolist(), possible.after.tolist(), strict=True))
+    missing = np.array([pair for pair in forced if pair not in known], int).reshape(-1, 2)
     kept = np.array([pair not in barred for pair in known], bool)
     before = np.concatenate([possible.before[kept], missing[:, 0]])
     after = np.concatenate([possible.after[kept], missing[:, 1]])

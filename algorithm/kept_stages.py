@@ -134,7 +134,7 @@ def _trajectories(columns: dict[str, np.ndarray]) -> Trajectories:
     )
 
 
-def _write(columns: dict[str, np.ndarray], known: dict[str, Any], path: Path) -> None:
+def _write(columns: dict[str, Any], known: dict[str, Any], path: Path) -> None:
     table = pa.table(columns).replace_schema_metadata({_BELONGINGS: json.dumps(known)})
     feather.write_feather(table, str(path), compression="zstd")
 

@@ -19,8 +19,11 @@ from cyclopts import App, Parameter
 import unocclude
 from benchmarks.tables import Row, run, score_row, show
 from evaluation.picture import draw_overview
+from importing.calibration import Calibration
+from importing.images import depth_image
+from importing.source import Wanted
+from importing.write import import_recording
 from recording.errors import InputError
-from recording.importing import Calibration, depth_image, import_images
 
 app = App(help=__doc__)
 MILLIMETRES = 0.001
@@ -67,7 +70,7 @@ def recorded(source: Path) -> unocclude.Recording:
     calibration = Calibration(fx=365, fy=365, cx=256, cy=212, fps=30, scale=scale)
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder) / source.name
-        import_images(source, place, calibration=calibration, pattern=pattern, masks=masks)
+        import_recording(source, place, wanted=Wanted(known=calibration, pattern=pattern, masks=masks))
         stored = unocclude.load_recording(place)
         frames = tuple(stored.frames)
     walkers = [sorted(source.glob(f"full{number}_*.png")) for number in (1, 2)]

@@ -105,6 +105,12 @@ def run(app: App, arguments: list[str] | None = None, *, name: str) -> None:
     except (InputError, CycloptsError) as error:
         messages.print(f"{name}: " + " ".join(str(error).split()), markup=False)
         sys.exit(2)
+    except OSError as error:  # A name that is too long, a disk that fails: what no reader can foresee.
+        messages.print(f"{name}: {error.filename or 'a file'}: cannot be used: {error.strerror}", markup=False)
+        sys.exit(2)
+    except MemoryError:
+        messages.print(f"{name}: expected less to hold in memory: fewer frames, smaller pictures or fewer workers")
+        sys.exit(2)
     except KeyboardInterrupt:
         messages.print(f"{name}: interrupted; nothing half-written is left")
         sys.exit(130)

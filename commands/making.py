@@ -1,4 +1,4 @@
-"""Making recordings: simulate, generate, resense, import."""
+"""Making recordings: simulate, generate, resense."""
 
 from pathlib import Path
 from typing import Annotated, Literal
@@ -6,10 +6,8 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 from cyclopts.validators import Number
 
-from algorithm.depth_image import depth_range
 from commands.common import SCALING, WRITING, Output, Scaling, Writing
 from recording.errors import InputError
-from recording.importing import Calibration, import_images
 from recording.store import load_recording
 from simulator.family import family_names, load_family
 from simulator.generate import generate
@@ -128,47 +126,3 @@ def resense_command(
     with common.progress():
         write_resensed(load_recording(recording), sensor, output, seed=seed, overwrite=common.overwrite)
     common.say(f"sensed {output} with {sensor}")
-
-
-def import_command(
-    source: Path,
-    *,
-    output: Output,
-    fx: float,
-    fy: float,
-    cx: float,
-    cy: float,
-    fps: float,
-    scale: float = 0.001,
-    pixel_centre: float = 0.0,
-    pattern: str = "*.png",
-    masks: str | None = None,
-    common: Writing = WRITING,
-) -> None:
-    """Make a recording of a folder of 16-bit depth images.
-
-    Example: `unocclude import depth/ --scale 0.001 --fx 365 --fy 365 --cx 256 --cy 212 --fps 30 -o recording`
-
-    Args:
-        source: Folder of the images; they are taken in the order of the numbers in their names.
-        output: The recording to make.
-        fx: Focal length along the columns, pixels.
-        fy: Focal length along the rows, pixels.
-        cx: Column of the principal point, pixels.
-        cy: Row of the principal point, pixels.
-        fps: Frames a second.
-        scale: Metres of one unit of the stored numbers; TUM RGB-D has 0.0002.
-        pixel_centre: Where the calibration has the centre of pixel (0, 0): 0, as most do, or 0.5.
-        pattern: Names of the depth images.
-        masks: Names of images of object ids, one for each depth image, for the evaluation.
-    """
-    calibration = Calibration(fx=fx, fy=fy, cx=cx, cy=cy, fps=fps, scale=scale, pixel_centre=pixel_centre)
-    overwrite = common.overwrite
-    with common.progress():
-        made = import_images(source, output, calibration=calibration, pattern=pattern, masks=masks, overwrite=overwrite)
-    first = load_recording(output).frames[0]
-    low, high = depth_range([first.depth])
-    common.say(
-        f"imported {made.frames} frames of {made.width}x{made.height} to {output}; the first has depths from "
-        f"{low:.2f} to {high:.2f} m and no return at {1 - first.seen.mean():.0%} of its pixels"
-    )

@@ -76,5 +76,5 @@ def _key_and_value(text: str) -> tuple[str, Any]:
         raise InputError(f"--set: expected KEY=VALUE, got {text!r}")
     try:
         return key, tomllib.loads(f"value = {value}")["value"]
-    except tomllib.TOMLDecodeError:
+    except (ValueError, RecursionError):  # No TOML; or too many digits or brackets, which the setting then refuses.
         return key, value

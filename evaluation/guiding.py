@@ -1,5 +1,6 @@
 """A user who knows the truth and corrects a solution by hand, the worst mistake first."""
 
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -10,7 +11,6 @@ from evaluation.scores import Scores, evidence_of, scores_of
 from recording.cache import Cache
 from recording.corrections import Correction, Corrections
 from recording.errors import InputError
-from recording.motions import Motions
 from recording.recording import Recording
 from recording.visibility import Visibility, visibility_of
 
@@ -20,10 +20,11 @@ class Guided:
     """A solution after some corrections."""
 
     corrections: Corrections
-    motions: Motions
     scores: Scores
     mistakes: tuple[Mistake, ...]
     """That are left."""
+    seconds: float
+    """That the solve took."""
 
     @property
     def perfect(self) -> bool:
@@ -63,11 +64,13 @@ def _solved(
     corrections: Corrections,
     visibility: Visibility,
 ) -> Guided:
+    begun = time.perf_counter()
     motions = solve(recording, settings, cache=cache, corrections=corrections)
+    seconds = time.perf_counter() - begun
     evidence = evidence_of(recording, motions, visibility)
     return Guided(
         corrections=corrections,
-        motions=motions,
         scores=scores_of(evidence),
         mistakes=tuple(mistakes(evidence.observations, recording.camera)),
+        seconds=seconds,
     )

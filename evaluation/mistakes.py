@@ -10,7 +10,7 @@ from jaxtyping import Int64
 from evaluation.clustering import contingency
 from evaluation.observations import BACKGROUND, Observations
 from recording.camera import Camera
-from recording.corrections import Anchor, Correction
+from recording.corrections import Anchor, Correction, CorrectionKind
 from recording.motions import NOISE
 
 LEAST_POINTS = 50
@@ -77,7 +77,8 @@ class _Mistakes:
         for segment, objectid, points in self._parts:
             if self._owner[segment] != objectid or self._motion[segment] == home.get(objectid):
                 continue
-            kind, owner, motion = "same", objectid, home.get(objectid)
+            kind: CorrectionKind = "same"
+            owner, motion = objectid, home.get(objectid)
             if motion is None:  # Its object has no motion of its own.
                 motion = self._motion[segment]
                 kind, owner = "different", self._holder[motion]

@@ -29,6 +29,8 @@ def whole_folder(path: Path, *, overwrite: bool = False) -> Iterator[Path]:
     What a killed run left behind under the working name is removed first. With `overwrite` an old result
     stays in its place until the new one is complete. An empty folder in that place is nothing to lose.
     """
+    with _usable(path):
+        _mend_exchange(path)
     _refuse_existing(path, overwrite=overwrite or (path.is_dir() and not any(path.iterdir())))
     if path.exists() and not path.is_dir():
         raise InputError(f"{path}: expected a folder to replace, got a file: choose another place")
@@ -48,7 +50,7 @@ def whole_folder(path: Path, *, overwrite: bool = False) -> Iterator[Path]:
 
 def _exchange(new: Path, path: Path) -> None:
     """Put the new folder in the old one's place; a folder cannot be replaced in one step, so two renames."""
-    old = path.with_name(f".{path.name}.old")
+    old = _old_name(path)
     shutil.rmtree(old, ignore_errors=True)
     path.rename(old)
     try:
@@ -57,6 +59,19 @@ def _exchange(new: Path, path: Path) -> None:
         old.rename(path)
         raise
     shutil.rmtree(old)
+
+
+def _mend_exchange(path: Path) -> None:
+    """End what a run began that was killed between the two renames, or before it had removed the old folder."""
+    old = _old_name(path)
+    if path.exists():
+        shutil.rmtree(old, ignore_errors=True)
+    elif old.is_dir():
+        old.rename(path)
+
+
+def _old_name(path: Path) -> Path:
+    return path.with_name(f".{path.name}.old")
 
 
 def _partial_name(path: Path) -> Path:

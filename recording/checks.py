@@ -13,6 +13,9 @@ from pydantic_core import ErrorDetails
 
 from recording.errors import InputError
 
+_MOST_BYTES = 256 * 10**6
+"""Of a text file: whatever is larger was not written for us."""
+
 
 class Frozen(BaseModel):
     """A value read from a file: fixed once made, no unknown keys, no NaN or infinite numbers."""
@@ -39,24 +42,41 @@ def nearest_name(name: str, known: Iterable[str]) -> str:
     return f"did you mean {close[0]!r}?" if close else "known: " + ", ".join(names)
 
 
+def text_of(path: Path, kind: str) -> str:
+    """The text of a file in UTF-8, without a byte order mark; `kind` says in a refusal what it should be."""
+    try:
+        with path.open("rb") as file:
+            content = file.read(_MOST_BYTES + 1)  # A device has no size, and no end.
+        if len(content) <= _MOST_BYTES:
+            return content.decode("utf-8-sig")
+        reason = f"more than {_MOST_BYTES // 10**6} MB"
+    except UnicodeDecodeError:
+        reason = "no UTF-8"
+    except (OSError, ValueError) as error:  # ValueError: a NUL in the name.
+        reason = getattr(error, "strerror", None) or _one_line(error)
+    raise InputError(f"{path}: expected a readable {kind}, got: {reason}")
+
+
 def toml_document(path: Path) -> dict[str, Any]:
     """The content of a TOML file."""
+    text = text_of(path, "TOML file")
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(f"{path}: expected a readable TOML file, {_reason(error)}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        return tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
         raise InputError(f"{path}: expected TOML, but {_one_line(error)}") from None
 
 
 def json_document(path: Path) -> Any:
     """The content of a JSON file; NaN and Infinity are refused, as JSON does."""
+    return json_value(text_of(path, "JSON file"), source=str(path))
+
+
+def json_value(text: str | bytes, *, source: str) -> Any:
+    """What JSON text says; NaN and Infinity are refused, as JSON does. `source` says in a refusal where it stands."""
     try:
-        return json.loads(path.read_text(encoding="utf-8"), parse_constant=_refused_constant)
-    except OSError as error:
-        raise InputError(f"{path}: expected a readable JSON file, {_reason(error)}") from None
+        return json.loads(text, parse_constant=_refused_constant)
     except (ValueError, RecursionError) as error:
-        raise InputError(f"{path}: expected JSON, but {_one_line(error)}") from None
+        raise InputError(f"{source}: expected JSON, but {_one_line(error)}") from None
 
 
 def finite(value: float | None) -> float | None:
@@ -70,10 +90,6 @@ def _refused_constant(name: str) -> float:
 
 def _one_line(error: Exception) -> str:
     return " ".join(str(error).split())
-
-
-def _reason(error: OSError) -> str:
-    return f"got: {error.strerror or type(error).__name__}"
 
 
 def _sentence(model: type[BaseModel], error: ErrorDetails) -> str:

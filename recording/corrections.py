@@ -6,7 +6,7 @@ The contract between the viewer, which writes them, and the solver, which respec
 import json
 import os
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
@@ -15,6 +15,7 @@ from recording.checks import Frozen, toml_document, validated
 from recording.errors import InputError
 
 CorrectionKind = Literal["same", "different", "forbid", "force"]
+Place = Annotated[float, Field(ge=-1e5, le=1e5)]
 _HEADER = "# Corrections by hand; `unocclude solve RECORDING --corrections FILE` respects them (docs/corrections.md).\n"
 
 
@@ -28,10 +29,10 @@ class CorrectionsFormat(Frozen):
 class Anchor(Frozen):
     """A point in the picture that names the segment on which it lies, whatever number the settings give that."""
 
-    frame: int = Field(ge=0)
-    column: float
+    frame: int = Field(ge=0, lt=2**31)
+    column: Place
     """Pixels; the centre of the first pixel is 0.5."""
-    row: float
+    row: Place
     segment: int | None = None
     """The number that the segment had when it was marked: for the reader alone."""
 
@@ -51,7 +52,7 @@ class Corrections(Frozen):
     """All that was said of a recording, in order."""
 
     format: CorrectionsFormat = CorrectionsFormat()
-    recording_digest: str
+    recording_digest: str = Field(pattern="^[0-9a-f]*$")
     """Of the recording that they belong to."""
     correction: tuple[Correction, ...] = ()
 

@@ -1,6 +1,10 @@
 """Frames as OpenEXR files: one single-part image, plain channels, attributes that explain it alone."""
 
+import os
 import re
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -9,13 +13,16 @@ import OpenEXR
 
 from recording.camera import PIXEL_CENTRE, Camera
 from recording.errors import InputError
-from recording.frame import Frame, Labels
+from recording.frame import FARTHEST_M, NEAREST_M, Frame, Labels
 from recording.xray import Cutout, CutoutXRay, XRay, trimmed_cutouts
 
 Channels = dict[str, np.ndarray]
 _CODING = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
 """Lossless, read everywhere. Run lengths take two thirds of the time to write, and up to three times the room."""
 _LABELS = {"objectid": np.uint32, "face": np.uint32, "bary.u": np.float32, "bary.v": np.float32}
+
+_MOST_CHANNELS = 64
+_ONE_AT_A_TIME = threading.Lock()
 
 
 def write_frame(path: Path, frame: Frame, *, camera: Camera, fps: float) -> None:
@@ -79,7 +86,7 @@ def write_xray(path: Path, xray: XRay, *, shape: tuple[int, int]) -> None:
 def read_xray(path: Path, *, shape: tuple[int, int]) -> CutoutXRay:
     """The X-ray in a file whose picture has the expected shape (rows, columns)."""
     cutouts = {}
-    for header, channels in _parts(path):
+    for header, channels in _parts(path, shape):
         column, row = (int(place) for place in header["dataWindow"][0])
         for name, pixels in channels.items():
             if not re.fullmatch(r"xray_\d+", name):
@@ -101,7 +108,7 @@ def write_channels(path: Path, channels: Channels, *, attributes: dict[str, obje
 
 def read_channels(path: Path, *, shape: tuple[int, int]) -> Channels:
     """The channels of a file, each of the expected shape (rows, columns)."""
-    channels = {name: pixels for _, part in _parts(path) for name, pixels in part.items()}
+    channels = {name: pixels for _, part in _parts(path, shape) for name, pixels in part.items()}
     for name, pixels in channels.items():
         if pixels.shape != shape:
             expected, came = f"{shape[1]}x{shape[0]}", "x".join(map(str, pixels.shape[::-1]))
@@ -121,18 +128,60 @@ def _write(file: OpenEXR.File, path: Path) -> None:
         raise InputError(f"{path}: cannot be written: {_one_line(error)}") from None
 
 
-def _parts(path: Path) -> list[tuple[dict[str, Any], Channels]]:
-    """Header and channels of each part of a file."""
+def _parts(path: Path, shape: tuple[int, int]) -> list[tuple[dict[str, Any], Channels]]:
+    """Header and channels of each part of a file; none is larger than the shape (rows, columns)."""
     if not path.is_file():
         raise InputError(f"{path} is missing: the recording is not complete; make or import it again")
     try:
-        with OpenEXR.File(str(path), separate_channels=True) as file:
-            return [
-                (dict(part.header), {name: np.array(channel.pixels) for name, channel in part.channels.items()})
-                for part in file.parts
-            ]
+        with _hushed():
+            promised = _promised(path, shape)
+            with OpenEXR.File(str(path), separate_channels=True) as file:
+                parts = [
+                    (dict(part.header), {name: np.array(channel.pixels) for name, channel in part.channels.items()})
+                    for part in file.parts
+                ]
+    except InputError:
+        raise
     except (RuntimeError, ValueError, MemoryError, TypeError) as error:  # OpenEXR raises what it likes.
         raise InputError(f"{path}: expected an OpenEXR file, but it cannot be read: {_one_line(error)}") from None
+    if [len(channels) for _, channels in parts] != promised:  # OpenEXR leaves out what it cannot decode.
+        raise InputError(f"{path}: expected an OpenEXR file, but its pixels are damaged: make or import it again")
+    return parts
+
+
+def _promised(path: Path, shape: tuple[int, int]) -> list[int]:
+    """How many channels each part has, by its header; refused where no frame has so much, before there is room for it.
+
+    A compressed channel of nothing takes hardly any room on disk, and a picture's in memory.
+    """
+    with OpenEXR.File(str(path), header_only=True) as file:
+        headers = [dict(part.header) for part in file.parts]  # The file empties its own when it closes.
+    for header in headers:
+        first, last = header["dataWindow"]
+        columns, rows = (last.astype(np.int64) - first + 1).tolist()
+        if rows * columns > shape[0] * shape[1]:
+            expected = f"{shape[1]}x{shape[0]}"
+            raise InputError(f"{path}: expected {expected} pixels, as recording.json says, got {columns}x{rows}")
+        if len(header["channels"]) > _MOST_CHANNELS:
+            raise InputError(f"{path}: expected {_MOST_CHANNELS} channels at the most, got {len(header['channels'])}")
+    return [len(header["channels"]) for header in headers]
+
+
+@contextmanager
+def _hushed() -> Iterator[None]:
+    """Within this block nothing appears on standard error: OpenEXR writes there what we say in words of ours.
+
+    It does so by the file's number, which all threads share: hence the lock.
+    """
+    with _ONE_AT_A_TIME:
+        kept, nowhere = os.dup(2), os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, 2)
+        try:
+            yield
+        finally:
+            os.dup2(kept, 2)
+            os.close(kept)
+            os.close(nowhere)
 
 
 def _one_line(error: Exception) -> str:
@@ -150,11 +199,11 @@ def _depth(path: Path, channels: Channels, name: str) -> np.ndarray | None:
     if name not in channels:
         return None
     stored = channels[name].astype(np.float32)
-    wrong = ~np.isfinite(stored) | (stored < 0)
+    wrong = (stored != 0) & ~((stored >= NEAREST_M) & (stored <= FARTHEST_M))
     if wrong.any():
         row, column = np.argwhere(wrong)[0]
         raise InputError(
-            f"{path}: expected depth in metres, 0 where there is none, "
+            f"{path}: expected depth in metres from {NEAREST_M:g} to {FARTHEST_M:g}, 0 where there is none, "
             f"got {stored[row, column]} in {name!r} at row {row}, column {column}"
         )
     return np.where(stored > 0, stored, np.float32(np.nan))

@@ -6,6 +6,9 @@ from enum import IntEnum
 import numpy as np
 from jaxtyping import Bool, Float32, UInt32
 
+NEAREST_M, FARTHEST_M = 1e-4, 1e5
+"""Depths that a recording may have: with others single precision no longer tells points apart, or squares overflow."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Labels:

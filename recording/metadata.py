@@ -9,8 +9,14 @@ from recording.camera import PIXEL_CENTRE, Camera
 from recording.checks import Frozen
 from recording.occlusion import Occlusion
 
-Positive = Annotated[float, Field(gt=0)]
+Side = Annotated[int, Field(ge=1, le=16384)]
+"""Of a picture, pixels: a larger one is a mistake, or would fill the memory."""
+Focal = Annotated[float, Field(ge=1e-3, le=1e6)]
+"""Pixels; outside of this range the picture of anything would be a point, or that of a point fill it."""
+Centre = Annotated[float, Field(ge=-1e6, le=1e6)]
 Row = tuple[float, float, float, float]
+_FARTHEST_M = 1e5
+"""From the world's origin: beyond it single precision no longer tells points a centimetre apart."""
 
 
 class Format(Frozen):
@@ -23,10 +29,10 @@ class Format(Frozen):
 class CameraRecord(Frozen):
     """The camera as JSON; `recording.camera.Camera` is the same as a value to compute with."""
 
-    fx: Positive
-    fy: Positive
-    cx: float
-    cy: float
+    fx: Focal
+    fy: Focal
+    cx: Centre
+    cy: Centre
     world_from_camera: tuple[Row, Row, Row, Row]
     """Rigid 4x4 transform, OpenCV axes, metres."""
 
@@ -35,10 +41,13 @@ class CameraRecord(Frozen):
     def _rigid(cls, rows: tuple[Row, Row, Row, Row]) -> tuple[Row, Row, Row, Row]:
         matrix = np.array(rows)
         rotation = matrix[:3, :3]
-        if not (np.allclose(rotation @ rotation.T, np.eye(3), atol=1e-4) and np.linalg.det(rotation) > 0):
+        small = np.all(np.abs(rotation) < 2)  # So that nothing overflows.
+        if not (small and np.allclose(rotation @ rotation.T, np.eye(3), atol=1e-4) and np.linalg.det(rotation) > 0):
             raise ValueError("expected a rotation and a translation, without scale or mirroring")
         if not np.array_equal(matrix[3], [0, 0, 0, 1]):
             raise ValueError("expected (0, 0, 0, 1) as the last row")
+        if np.any(np.abs(matrix[:3, 3]) > _FARTHEST_M):
+            raise ValueError(f"expected a camera within {_FARTHEST_M:g} m of the world's origin")
         return rows
 
 
@@ -79,13 +88,13 @@ class Metadata(Frozen):
     format: Format
     name: str | None = None
     frames: PositiveInt
-    fps: Positive
-    width: PositiveInt
-    height: PositiveInt
+    fps: Annotated[float, Field(ge=1e-3, le=1e6)]
+    width: Side
+    height: Side
     camera: CameraRecord
     depth: DepthRecord
     pixel_centre: float = Field(default=PIXEL_CENTRE, ge=PIXEL_CENTRE, le=PIXEL_CENTRE)
-    timestamps: tuple[float, ...] | None = None
+    timestamps: tuple[Annotated[float, Field(ge=-1e12, le=1e12)], ...] | None = None
     """Seconds, one a frame."""
     sensor: dict[str, Any] | None = None
     """Preset and parameters of the simulated sensor."""

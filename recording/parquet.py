@@ -7,16 +7,19 @@ from typing import Annotated, Any
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.compute as pc
 import pyarrow.parquet as pq
 from pydantic import Field, model_validator
 
 from recording.atomic import whole_file
-from recording.checks import Frozen, validated
+from recording.checks import Frozen, json_value, validated
 from recording.corrections import Corrections
 from recording.errors import InputError
 from recording.motions import NOISE, SOURCES, Event, EventKind, Link, Making, Motions, Representative
 
-NotNegative = Annotated[int, Field(ge=0)]
+NotNegative = Annotated[int, Field(ge=0, lt=2**31)]
+Int32 = Annotated[int, Field(ge=-(2**31), lt=2**31)]
+_FEW_ROWS, _ROWS_IN_A_BYTE = 10**6, 4
 _REQUIRED = ("frame", "trajectory", "x", "y", "z", "motion", "source")
 _KINDS = {
     "frame": pa.int32(),
@@ -29,8 +32,8 @@ _KINDS = {
 
 
 class _StoredRepresentative(Frozen):
-    motion: int
-    frame: tuple[int, ...]
+    motion: NotNegative
+    frame: tuple[NotNegative, ...]
     x: tuple[float, ...]
     y: tuple[float, ...]
     z: tuple[float, ...]
@@ -54,14 +57,14 @@ class _StoredRepresentative(Frozen):
 
 
 class _StoredLink(Frozen):
-    before: int
-    after: int
+    before: Int32
+    after: Int32
     confidence: float
 
 
 class _StoredEvent(Frozen):
     kind: EventKind
-    frame: int = Field(ge=0)
+    frame: NotNegative
     motions: tuple[NotNegative, NotNegative]
 
     @model_validator(mode="after")
@@ -113,11 +116,7 @@ def load_motions(path: str | os.PathLike[str]) -> Motions:
     place = Path(path)
     if not place.is_file():
         raise InputError(f"{place}: expected a motions.parquet, but there is no such file: run 'unocclude solve'")
-    try:
-        table = pq.read_table(place)
-    except (pa.ArrowException, OSError) as error:
-        reason = " ".join(str(error).split())
-        raise InputError(f"{place}: expected a Parquet file, but it cannot be read: {reason}") from None
+    table = _table(place)
     missing = [name for name in _REQUIRED if name not in table.column_names]
     if missing:
         raise InputError(f"{place}: expected the columns {', '.join(_REQUIRED)}; missing: {', '.join(missing)}")
@@ -125,6 +124,17 @@ def load_motions(path: str | os.PathLike[str]) -> Motions:
     order = np.lexsort((columns["frame"], columns["trajectory"]))
     belongings = _read_belongings(place, table.schema.metadata or {})
     return _motions(columns, _source(place, table), belongings).rows(order)
+
+
+def _table(place: Path) -> pa.Table:
+    """The file's table, unless it promises more rows than there can be: no two rows are alike, and each needs room."""
+    try:
+        rows = pq.read_metadata(place).num_rows
+        if rows <= _FEW_ROWS + _ROWS_IN_A_BYTE * place.stat().st_size:
+            return pq.read_table(place)
+    except (pa.ArrowException, OSError, MemoryError, ValueError) as error:  # Arrow raises what it likes.
+        raise InputError(f"{place}: expected a Parquet file, but it cannot be read: {_line(error)}") from None
+    raise InputError(f"{place}: expected different places in its rows, got {rows} rows that take hardly any room")
 
 
 def _motions(columns: dict[str, np.ndarray], source: np.ndarray, belongings: dict[str, Any]) -> Motions:
@@ -160,11 +170,15 @@ def _column(place: Path, table: pa.Table, name: str) -> np.ndarray:
 
 
 def _source(place: Path, table: pa.Table) -> np.ndarray:
-    names = table.column("source").to_pylist()
-    unknown = set(names) - set(SOURCES)
-    if unknown:
-        raise InputError(f"{place}: expected {', '.join(SOURCES)} in column 'source', got {unknown.pop()!r}")
-    return np.array([SOURCES.index(name) for name in names], np.uint8)
+    try:
+        names = table.column("source").cast(pa.string())
+    except pa.ArrowException as error:
+        raise InputError(f"{place}: expected column 'source' as words, but {_line(error)}") from None
+    found = pc.index_in(names, value_set=pa.array(SOURCES))
+    if found.null_count:
+        unknown = names.filter(pc.is_null(found))[0].as_py()
+        raise InputError(f"{place}: expected {', '.join(SOURCES)} in column 'source', got {unknown!r}")
+    return np.asarray(found.to_numpy().astype(np.uint8))
 
 
 def _line(error: Exception) -> str:
@@ -202,11 +216,9 @@ def _stored_link(link: Link) -> dict[str, Any]:
 def _read_belongings(place: Path, metadata: dict[bytes, bytes]) -> dict[str, Any]:
     """What the schema's metadata says beside the rows; keys that are not ours are somebody else's."""
     known = _Belongings.model_fields
-    try:
-        found = {key: json.loads(metadata[key.encode()]) for key in known if key.encode() in metadata}
-    except ValueError as error:
-        raise InputError(f"{place}: the schema's metadata is damaged: {_line(error)}: solve again") from None
-    read = validated(_Belongings, found, source=f"{place}: the schema's metadata is damaged")
+    source = f"{place}: the schema's metadata is damaged"
+    found = {key: json_value(metadata[key.encode()], source=source) for key in known if key.encode() in metadata}
+    read = validated(_Belongings, found, source=source)
     return {
         "making": Making(
             settings=read.settings,

@@ -8,7 +8,7 @@ from jaxtyping import Float32
 
 from recording.camera import Camera
 from recording.errors import InputError
-from recording.frame import Frame
+from recording.frame import FARTHEST_M, NEAREST_M, Frame
 from recording.metadata import metadata_of
 from recording.recording import Recording
 
@@ -43,4 +43,11 @@ def _metres(depth: np.ndarray, camera: Camera, number: int) -> Float32[np.ndarra
         )
     if np.any(image < 0):
         raise InputError(f"depth image {number}: expected metres before the camera, got {np.nanmin(image):g}")
+    present = image[np.isfinite(image) & (image > 0)]
+    strange = present[(present < NEAREST_M) | (present > FARTHEST_M)]
+    if strange.size:
+        raise InputError(
+            f"depth image {number}: expected metres from {NEAREST_M:g} to {FARTHEST_M:g}, got {strange[0]:g}: "
+            "multiply by the unit"
+        )
     return np.where(np.isfinite(image) & (image > 0), image, np.nan).astype(np.float32)

@@ -21,6 +21,9 @@ from recording.recording import Recording
 from recording.truth import MeshSequence, Truth
 from recording.xray import XRay
 
+_DAMAGED = (OSError, ValueError, EOFError, TypeError, KeyError, MemoryError, AttributeError, zipfile.BadZipFile)
+"""What reading an archive ends with that is none. TypeError, AttributeError: a bare array."""
+
 
 def write_recording(
     folder: Path,
@@ -99,7 +102,7 @@ def load_recording(folder: str | os.PathLike[str]) -> Recording:
     return Recording(
         metadata=metadata,
         frames=_StoredFrames(place, metadata.frames, camera),
-        truth=_StoredTruth(place / "truth.npz") if (place / "truth.npz").is_file() else None,
+        truth=_StoredTruth(place / "truth.npz", metadata.frames) if (place / "truth.npz").is_file() else None,
         xray=_StoredXRays(place, metadata.frames, camera) if (place / "xray").is_dir() else None,
     )
 
@@ -160,13 +163,14 @@ class _StoredXRays(_Stored, Sequence[XRay]):
 class _StoredTruth(Mapping[int, MeshSequence]):
     """The meshes in a `truth.npz`, each read when it is first asked for."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, frames: int) -> None:
         self._path = path
+        self._frames = frames
         try:
             with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
                 names = [name.removeprefix("faces_") for name in arrays.files if name.startswith("faces_")]
                 self._ids = sorted(map(int, names))
-        except (OSError, ValueError, EOFError, TypeError, zipfile.BadZipFile):  # TypeError: a bare array.
+        except _DAMAGED:
             raise InputError(f"{path}: expected a NumPy .npz archive: make the recording again") from None
         self._mesh = lru_cache(maxsize=None)(self._read)
 
@@ -182,12 +186,33 @@ class _StoredTruth(Mapping[int, MeshSequence]):
         return len(self._ids)
 
     def _read(self, objectid: int) -> MeshSequence:
+        damaged = InputError(f"{self._path}: the mesh of object {objectid} is damaged: make it again")
         try:
             with self._path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
-                faces, vertices = (arrays[f"{name}_{objectid}"] for name in ("faces", "vertices"))
-        except (KeyError, ValueError, OSError, zipfile.BadZipFile):
-            raise InputError(f"{self._path}: the mesh of object {objectid} is damaged: make it again") from None
+                names = [f"{name}_{objectid}" for name in ("faces", "vertices")]
+                if any(_swells(arrays.zip.getinfo(f"{name}.npy")) for name in names):
+                    raise damaged
+                faces, vertices = (arrays[name] for name in names)
+        except _DAMAGED:
+            raise damaged from None
+        if not _is_mesh(faces, vertices, self._frames):
+            raise damaged
         return MeshSequence(faces=faces.astype(np.int32), vertices=vertices.astype(np.float32))
+
+
+def _swells(member: zipfile.ZipInfo) -> bool:
+    """Whether a member of an archive unpacks to far more than it is on disk, which no mesh does."""
+    return member.file_size > 10**6 + 100 * member.compress_size
+
+
+def _is_mesh(faces: np.ndarray, vertices: np.ndarray, frames: int) -> bool:
+    """Whether the arrays are the faces, and the vertices in each frame or in the one of what stands still."""
+    if faces.dtype.kind not in "iu" or vertices.dtype.kind != "f" or faces.ndim != 2 or vertices.ndim != 3:
+        return False
+    if faces.shape[1] != 3 or vertices.shape[2] != 3 or len(vertices) not in (1, frames):
+        return False
+    numbered = not faces.size or (faces.min() >= 0 and faces.max() < vertices.shape[1])
+    return bool(numbered and np.isfinite(vertices).all())
 
 
 def _write_truth(path: Path, truth: Truth) -> None:

@@ -13,6 +13,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
+from recording.checks import text_of
 from recording.errors import InputError
 
 _CHANNELS = tuple(f"{axis}{kind}" for kind in ("position", "rotation") for axis in "XYZ")
@@ -83,11 +84,7 @@ class _Words:
 
 def read_bvh(path: Path) -> Clip:
     """The motion in a BVH file; an `InputError` names the file and the line of what cannot be read."""
-    try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        reason = (error.strerror if isinstance(error, OSError) else None) or "no UTF-8"
-        raise InputError(f"{path}: expected a readable BVH file, got: {reason}") from None
+    lines = text_of(path, "BVH file").splitlines()
     words = _Words(path=path, words=[(number, word) for number, line in enumerate(lines, 1) for word in line.split()])
     skeleton = _skeleton(words)
     words.require("Frames:")

@@ -12,6 +12,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, PositiveInt, model_
 
 from recording.checks import Frozen, nearest_name, toml_document, validated
 from recording.errors import InputError
+from recording.metadata import Side
 from simulator.body import body_names
 from simulator.body_name import BodyName
 from simulator.occlusion import OcclusionWish
@@ -44,7 +45,7 @@ NotNegative = Annotated[float, Field(ge=0)]
 Span = Annotated[tuple[Positive, Positive], BeforeValidator(_both_ends), AfterValidator(_ascending)]
 """A range of lengths, speeds or angles, all above 0."""
 Count = Annotated[
-    tuple[Annotated[int, Field(ge=0)], Annotated[int, Field(ge=0)]],
+    tuple[Annotated[int, Field(ge=0, le=100_000)], Annotated[int, Field(ge=0, le=100_000)]],
     BeforeValidator(_both_ends),
     AfterValidator(_ascending),
 ]
@@ -55,9 +56,9 @@ Sensors = Annotated[tuple[Sensor, ...], BeforeValidator(_one_or_several), Field(
 class CameraRange(Frozen):
     """Where the camera may stand: before the people, upright, as high as `eye_m`."""
 
-    width: PositiveInt = 320
+    width: Side = 320
     """Picture width, pixels."""
-    height: PositiveInt = 240
+    height: Side = 240
     """Picture height, pixels."""
     eye_m: Span = (1.5, 1.5)
     """Its height above the ground, metres."""

@@ -14,6 +14,7 @@ from pydantic import Field, PositiveInt, model_validator
 from recording.camera import Camera, looking_at
 from recording.checks import Frozen, nearest_name, toml_document, validated
 from recording.errors import InputError
+from recording.metadata import Side
 from simulator.carrying import check_hands
 from simulator.casting import Surroundings
 from simulator.juggling_scene import Juggler
@@ -25,14 +26,16 @@ from simulator.things import Ball, Obstacle, Person, Point, Positive
 from simulator.trajectory_file import with_recorded_walks
 
 NotNegative = Annotated[float, Field(ge=0)]
+FrameCount = Annotated[int, Field(ge=1, le=100_000)]
+"""Who needs more wants several scenes: everybody's mesh in every frame is in memory."""
 
 
 class CameraSpot(Frozen):
     """The virtual scanner: a pinhole with square pixels, upright, its principal point in the middle."""
 
-    width: PositiveInt = 320
+    width: Side = 320
     """Picture width, pixels."""
-    height: PositiveInt = 240
+    height: Side = 240
     """Picture height, pixels."""
     position: Point
     """Where it stands, metres."""
@@ -99,7 +102,7 @@ class Scene(Frozen):
     """Letters, digits, `_`, `-`, `.`: the recording's folder is called so."""
     description: str = ""
     """One sentence for the reader."""
-    frames: PositiveInt
+    frames: FrameCount
     """How many pictures are taken."""
     fps: Positive
     """Pictures a second."""
@@ -133,7 +136,7 @@ class Scene(Frozen):
 class _Around(Frozen):
     """What of a scene its crowd has to suit, as in `Scene`."""
 
-    frames: PositiveInt
+    frames: FrameCount
     fps: Positive
     camera: CameraSpot
     obstacles: tuple[Obstacle, ...] = ()

@@ -8,7 +8,10 @@ from recording.errors import InputError
 
 def file_inside(folder: Path, file: str) -> Path:
     """The file's path; refused where it leads out of the folder."""
-    path = (folder / file).resolve()
+    try:
+        path = (folder / file).resolve()
+    except (OSError, RuntimeError, ValueError):  # Links in a circle, or a NUL in the name.
+        raise InputError(f"file {file!r}: expected the path of a file from the scene's folder {folder}") from None
     if not path.is_relative_to(folder.resolve()):
         raise InputError(f"file {file!r}: expected one in the scene's folder {folder} or below: copy it there")
     return path

@@ -15,9 +15,11 @@ from simulator.motion_file import Motion
 from simulator.path import FASTEST_WALK
 from simulator.props import Prop, Side, check_props
 
-Positive = Annotated[float, Field(gt=0)]
-Ground = tuple[float, float]
-Point = tuple[float, float, float]
+Positive = Annotated[float, Field(gt=0, le=1e6)]
+Coordinate = Annotated[float, Field(ge=-1e5, le=1e5)]
+"""Metres, as far as single precision tells points a centimetre apart."""
+Ground = tuple[Coordinate, Coordinate]
+Point = tuple[Coordinate, Coordinate, Coordinate]
 
 
 class Person(Frozen):

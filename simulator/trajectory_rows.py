@@ -11,6 +11,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.interpolate import make_smoothing_spline
 
+from recording.checks import text_of
 from recording.errors import InputError
 
 QUICKEST_HZ = 1.0
@@ -18,6 +19,7 @@ QUICKEST_HZ = 1.0
 METRES = {"m": 1.0, "cm": 0.01}
 """Of the units that a file may be written in."""
 _SMOOTHED_FROM = 5  # Rows: what the smoothing spline needs.
+_LARGEST = 1e9  # Of any number in a row: places in centimetres of a country, frames of years.
 _COLUMNS = ("id", "frame", "x", "y")
 
 Row = tuple[int, tuple[float, float, float, float]]
@@ -26,11 +28,7 @@ Row = tuple[int, tuple[float, float, float, float]]
 
 def rows_of(path: Path) -> list[Row]:
     """The rows of all people: one at least."""
-    try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        reason = (error.strerror if isinstance(error, OSError) else None) or "no UTF-8"
-        raise InputError(f"{path}: expected a readable text file of trajectories, got: {reason}") from None
+    lines = text_of(path, "text file of trajectories").splitlines()
     filled = [(number, cells) for number, line in enumerate(lines, start=1) if (cells := _cells(line))]
     columns = list(range(len(_COLUMNS)))
     if filled and not any(map(_is_number, filled[0][1])):
@@ -69,6 +67,8 @@ def _numbers(path: Path, number: int, cells: list[str], columns: list[int]) -> t
         ) from None
     if not np.isfinite([person, frame, x, y]).all():
         raise InputError(f"{path}, line {number}: expected finite numbers, got {' '.join(cells)!r}: leave the line out")
+    if np.max(np.abs([person, frame, x, y])) > _LARGEST:
+        raise InputError(f"{path}, line {number}: expected numbers up to {_LARGEST:g}, got {' '.join(cells)!r}")
     return person, frame, x, y
 
 

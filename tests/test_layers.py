@@ -9,10 +9,12 @@ ROOT = Path(__file__).parent.parent
 MAY_IMPORT = {
     "recording": set(),
     "simulator": {"recording", "scenes"},
+    "importing": {"recording"},
     "algorithm": {"recording"},
     "evaluation": {"recording", "simulator", "algorithm"},
+    "exporting": {"recording"},
     "viewer": {"recording", "simulator", "algorithm", "evaluation"},
-    "commands": {"recording", "simulator", "algorithm", "evaluation", "viewer"},
+    "commands": {"recording", "simulator", "importing", "algorithm", "evaluation", "exporting", "viewer"},
 }
 LAYERS = {*MAY_IMPORT, "scenes", "unocclude"}
 

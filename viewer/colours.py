@@ -20,6 +20,8 @@ LARGEST_ERROR_M = 0.5
 """Errors of this and more have the last colour."""
 ERROR = "cividis"
 """Colours of errors: small ones are dark."""
+MARK_COLOURS = COLOURS[:2]
+"""Of the first and of the second marked segment."""
 _PALE = 0.75
 """How far what is not picked goes towards white."""
 
@@ -33,6 +35,8 @@ class Shades:
     """The nearest and the farthest depth that differ in colour."""
     picked: int | None = None
     """The motion that keeps its colours while all others pale; None = all keep theirs."""
+    marked: tuple[int | None, ...] = ()
+    """The first and the second segment that stand out, while all others pale; None = not marked yet."""
 
 
 @cache
@@ -80,7 +84,19 @@ def motion_colours(cloud: Cloud, answer: Answer, shades: Shades) -> UInt8[np.nda
         colours = scaled(known, 0.0, LARGEST_ERROR_M, ERROR)
     else:
         colours = numbered(motions.motion[row] if shades.colouring == "motion" else motions.segment[row])
+    if any(segment is not None for segment in shades.marked):
+        return _marked_colours(colours, motions.segment[row], shades.marked)
     return colours if shades.picked is None else pale(colours, motions.motion[row] != shades.picked)
+
+
+def _marked_colours(
+    colours: UInt8[np.ndarray, "point 3"], segment: Int[np.ndarray, "point"], marked: tuple[int | None, ...]
+) -> UInt8[np.ndarray, "point 3"]:
+    shown = pale(colours, np.ones(len(colours), bool))
+    for number, colour in reversed(list(zip(marked, MARK_COLOURS, strict=False))):  # Of one segment the first counts.
+        if number is not None:
+            shown[segment == number] = rgb(colour)
+    return shown
 
 
 def legend(shades: Shades) -> str:

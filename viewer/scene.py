@@ -6,10 +6,11 @@ import numpy as np
 from jaxtyping import Float
 from viser import LabelHandle, SceneClickEvent, SceneNodeHandle, ViserServer
 
-from recording.motions import INTER, INTRA, NOISE, Representative
+from recording.motions import INTER, INTRA, Representative
 from viewer.boxes import Boxes, boxes_of
 from viewer.clouds import Cloud, motion_cloud, sensed_cloud
 from viewer.colours import Shades, bare_colours, motion_colours, numbered, pale
+from viewer.highlight import Highlight
 from viewer.lines import curve_lines, hole_lines, link_lines, links_of, segment_lines, segment_places
 from viewer.session import Session
 from viewer.stage import CloudLayer, Layer, LineLayer, NodeLayer, Stage
@@ -39,6 +40,7 @@ class Scene:
         put_ground(self.stage)
         self._look()
         self._sensed.put(cloud := sensed_cloud(session.bare, session.space), self._bare(cloud), 0)
+        self._highlight = Highlight(self.stage, self.point_m)
         self._answer()
         for name in SHOWN if session.answer else ("sensed", "camera"):
             self.show(name, True)
@@ -47,12 +49,16 @@ class Scene:
         session.judged.connect(self._rename)
         session.recoloured.connect(self._paint)
         session.truth_known.connect(self._learn)
+        session.marks.changed.connect(self._mark)
         server.scene.on_click()(self._clicked)
 
     @property
     def shades(self) -> Shades:
         """What decides on colours now."""
-        return Shades(colouring=self.session.colouring, depth_m=self.depth_m, picked=self.session.picked)
+        session = self.session
+        return Shades(
+            colouring=session.colouring, depth_m=self.depth_m, picked=session.picked, marked=session.marks.segments
+        )
 
     def show(self, name: str, shown: bool) -> None:
         """Show a layer or not."""
@@ -69,7 +75,10 @@ class Scene:
             layer.resize(point_m, self.session.frame)
 
     def pick_along(self, origin: Float[np.ndarray, "3"], direction: Float[np.ndarray, "3"]) -> None:
-        """Pick the motion of the first point that a ray through the world meets; none where it meets none."""
+        """Pick the motion of the first point that a ray through the world meets, or mark its segment.
+
+        Where it meets none, none is picked, and none marked.
+        """
         answer, frame = self.session.answer, self.session.frame
         if answer is None:
             return
@@ -80,8 +89,7 @@ class Scene:
                 points.append(layer.cloud.points[here].astype(np.float64))
                 rows.append(layer.cloud.row[here])
         nearest = nearest_to_ray(np.concatenate(points), origin - self.session.space.middle, direction)
-        motion = NOISE if nearest is None else int(answer.motions.motion[np.concatenate(rows)[nearest]])
-        self.session.pick(None if motion == NOISE else motion)
+        self.session.click(None if nearest is None else int(np.concatenate(rows)[nearest]))
 
     def _made_layers(self) -> dict[str, Sequence[Layer]]:
         stage, size, thick = self.stage, self.session.space.size_m, 0.002 * self.session.space.size_m
@@ -142,6 +150,7 @@ class Scene:
             self._numbers.show(self._numbers.shown, first)
             self._put_curves()
             self._put_holes()
+            self._put_marks()
             self._rename()
 
     def _paint(self) -> None:
@@ -155,6 +164,15 @@ class Scene:
                 if answer is not None and layer.cloud is not None:
                     layer.paint(motion_colours(layer.cloud, answer, shades), first)
             self._put_curves()
+
+    def _mark(self) -> None:
+        self._paint()
+        self._put_marks()
+
+    def _put_marks(self) -> None:
+        answer = self.session.answer
+        with self.server.atomic():
+            self._highlight.put(self.session.marks, answer.motions if answer else None, self._segment_places)
 
     def _put_curves(self) -> None:
         """The curves, their places now, the boxes and the links: few lines, put anew whenever colours change."""

@@ -4,25 +4,28 @@ import time
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
-from typing import Any
+from typing import Any, Literal
 
 from algorithm.settings import Preset, Settings
-from algorithm.staged import solve
 from evaluation.methods import settings_of
 from recording.cache import Cache
-from recording.checks import validated
-from recording.errors import InputError
-from recording.motions import Motions
+from recording.corrections import Corrections
+from recording.motions import NOISE, Motions
 from recording.recording import Recording, stripped
 from recording.visibility import Visibility, visibility_of
 from viewer.answer import Answer, Judgement, judged
 from viewer.clock import Action, Clock, Signal, Timer
 from viewer.clouds import Cloud, xray_cloud
 from viewer.colours import Colouring
+from viewer.keeping import CorrectionsFile
+from viewer.marks import Marks, mark_at
 from viewer.playback import Playback
 from viewer.space import Space, space_of
+from viewer.wish import Wish, wish_of
 from viewer.worker import Worker
 
+Clicks = Literal["pick", "mark"]
+"""What a click on a point in the scene does: it picks its motion, or it marks its segment."""
 PATIENCE_SECONDS = 0.5
 """A setting that did not change for so long is one that was meant."""
 
@@ -30,7 +33,15 @@ PATIENCE_SECONDS = 0.5
 class Session:
     """A recording, its motions under some settings, and the moment that is looked at."""
 
-    def __init__(self, recording: Recording, motions: Motions | None, *, clock: Clock, cache: Cache | None) -> None:
+    def __init__(
+        self,
+        recording: Recording,
+        motions: Motions | None,
+        *,
+        clock: Clock,
+        cache: Cache | None,
+        file: CorrectionsFile | None = None,
+    ) -> None:
         self.recording = recording
         self.bare = stripped(recording)
         """What the sensor saw, and nothing else, to be solved again without reading files."""
@@ -38,8 +49,14 @@ class Session:
         self.opened = Answer(motions=motions) if motions else None
         """The motions that the viewer was opened with, the "before" of all changes."""
         self.answer = self.opened
-        self.settings = _settings(recording, motions)
-        self.opened_settings = self.settings
+        self.opened_wish = wish_of(recording, motions, self.bare.digest())
+        read = file.known if file is not None else None
+        self.wish = replace(self.opened_wish, corrections=read) if read is not None else self.opened_wish
+        """What the motions are to be; those that are shown may still be on their way there."""
+        self.file = file
+        """Where corrections are kept, if anywhere."""
+        self.marks = Marks()
+        self.clicks: Clicks = "pick"
         self.visibility: Visibility | None = None
         self.xray: Cloud | None = None
         self.playback = Playback(frames=self.frames, fps=recording.fps, clock=clock)
@@ -47,17 +64,33 @@ class Session:
         self.colouring: Colouring = "motion"
         self.status = ""
         self.answered, self.judged, self.truth_known = Signal(), Signal(), Signal()
-        self.picked_changed, self.recoloured = Signal(), Signal()
-        self.status_changed, self.settings_changed = Signal(), Signal()
+        self.picked_changed, self.recoloured, self.clicks_changed = Signal(), Signal(), Signal()
+        self.status_changed, self.settings_changed, self.corrections_changed = Signal(), Signal(), Signal()
         self._clock, self._cache = clock, cache
         self._worker: Worker[Any] = Worker(self.post)
         self._waiting: Timer | None = None
         self._busy, self._spent = False, ""
+        self._granted = self.wish
+        """The wish of which the motions are that are shown."""
+        self._prepared: Settings | None = None
+        """Under which the next correction is quick, for the motions that it does not change are kept."""
+        for signal in (self.picked_changed, self.marks.changed):
+            signal.connect(self._prepare)
 
     @property
     def frames(self) -> int:
         """Of the recording."""
         return self.recording.metadata.frames
+
+    @property
+    def settings(self) -> Settings:
+        """Those that are wished for."""
+        return self.wish.settings
+
+    @property
+    def corrections(self) -> Corrections:
+        """By hand, those that are wished for."""
+        return self.wish.corrections
 
     @property
     def frame(self) -> int:
@@ -70,12 +103,14 @@ class Session:
             self._clock.call_soon_threadsafe(action)
 
     def begin(self) -> None:
-        """Find out what the truth says, in the background."""
+        """Find out what the truth says, and solve where the corrections in the file are others, in the background."""
         if self.recording.truth is None and self.recording.xray is None and not self._labelled:
             self.say("no truth in this recording: no scores")
-            return
-        self.say("reading the truth ...")
-        self._worker.do(self._truth, done=self._know, refused=self.say)
+        else:
+            self.say("reading the truth ...")
+            self._worker.do(self._truth, done=self._know, refused=self.say)
+        if self.opened is not None and self.wish != self.opened_wish:
+            self.solve()
 
     @property
     def _labelled(self) -> bool:
@@ -88,6 +123,24 @@ class Session:
         self.picked_changed()
         self.recoloured()
 
+    def click(self, row: int | None) -> None:
+        """Pick the motion of a row of the motions, or mark its segment, whichever clicks do now."""
+        motions = self.answer.motions if self.answer else None
+        if motions is None:
+            return
+        if self.clicks == "mark":
+            mark = mark_at(motions, row) if row is not None else None
+            if mark is not None:
+                self.marks.add(mark)
+            return
+        motion = NOISE if row is None else int(motions.motion[row])
+        self.pick(None if motion == NOISE else motion)
+
+    def click_to(self, clicks: Clicks) -> None:
+        """Clicks do something else from now on."""
+        self.clicks = clicks
+        self.clicks_changed()
+
     def colour_by(self, colouring: Colouring) -> None:
         """Other colours."""
         self.colouring = colouring
@@ -97,44 +150,64 @@ class Session:
         """Solve under other settings, as soon as they do not change any more."""
         if settings == self.settings:
             return
-        self.settings = settings
+        self.wish = replace(self.wish, settings=settings)
         self.settings_changed()
-        if self._waiting is not None:
-            self._waiting.cancel()
+        self._hurry()
         self._waiting = self._clock.call_later(PATIENCE_SECONDS, self.solve)
 
     def want_preset(self, preset: Preset) -> None:
         """Solve under a preset's settings."""
         self.want(settings_of(self.recording, preset))
 
+    def correct(self, corrections: Corrections) -> None:
+        """Solve under other corrections."""
+        if corrections == self.corrections:
+            return
+        self.wish = replace(self.wish, corrections=corrections)
+        self.corrections_changed()
+        self._hurry()
+        self.solve()
+
     def reset(self) -> None:
-        """Go back to the motions and settings that the viewer was opened with."""
+        """Go back to the settings that the viewer was opened with; corrections stay."""
+        self._hurry()
+        self.wish = replace(self.wish, settings=self.opened_wish.settings)
+        self.settings_changed()
+        self.solve()
+
+    def _hurry(self) -> None:
+        """Wait no longer whether a setting changes again."""
         if self._waiting is not None:
             self._waiting.cancel()
-        self.settings = self.opened_settings
-        self.settings_changed()
-        self._back()
 
     def _back(self) -> None:
-        self._spent = ""
+        self._spent, self._granted = "", self.wish
         self._take(self.opened)
         self.say("")
 
     def solve(self) -> None:
-        """Solve under the settings, in the background."""
+        """Solve what is wished for, in the background."""
         if self._busy:
-            return  # What is being solved is followed by what is wanted then.
-        if self.opened is not None and self.settings == self.opened_settings:
+            return  # What is being solved is followed by what is wished for then.
+        if self.opened is not None and self.wish == self.opened_wish:
             self._back()
             return
         self._busy = True
         self.say("solving ...")
-        settings, begun = self.settings, time.monotonic()
+        wish, begun = self.wish, time.monotonic()
         self._worker.do(
-            lambda: solve(self.bare, settings, cache=self._cache),
-            done=partial(self._solved, settings, begun),
-            refused=self._refused,
+            lambda: wish.solved(self.bare, self._cache),
+            done=partial(self._solved, wish, begun),
+            refused=partial(self._refused, wish),
         )
+
+    def _prepare(self) -> None:
+        """Somebody points at something, and may correct it next: keep the motions one by one, in the background."""
+        wish, cache, pointed = self._granted, self._cache, self.picked is not None or bool(self.marks.known)
+        if cache is None or self._busy or not pointed or self._prepared == wish.settings or not wish.is_near(cache):
+            return
+        self._prepared = wish.settings
+        self._worker.do(lambda: wish.solved(self.bare, cache), done=lambda _: None, refused=self.say)
 
     def say(self, status: str) -> None:
         """Tell what is going on."""
@@ -171,36 +244,40 @@ class Session:
         self.judged()
         self.recoloured()
 
-    def _solved(self, settings: Settings, begun: float, motions: Motions) -> None:
+    def _solved(self, wish: Wish, begun: float, motions: Motions) -> None:
         self._busy = False
-        if settings != self.settings:
+        if wish.settings != self.settings:
             self.solve()
             return
         answer = Answer(motions=motions)
         if self.opened is None:
-            self.opened, self.opened_settings = answer, settings
+            self.opened, self.opened_wish = answer, wish
+        self._granted, self._prepared = wish, wish.settings
         self._take(answer)
         self._spent = f"solved in {time.monotonic() - begun:.1f} s"
-        self._judge(answer)
+        if wish == self.wish:
+            self._judge(answer)
+        else:
+            self.solve()
 
-    def _refused(self, sentence: str) -> None:
+    def _refused(self, wish: Wish, sentence: str) -> None:
+        """Tell why; a correction that was added last, and contradicts those before it, is not kept."""
         self._busy = False
+        if wish != self.wish:
+            self.solve()
+            return
+        before = self._granted.corrections
+        added = len(wish.corrections.correction) > len(before.correction)
+        if added and wish.settings == self._granted.settings:
+            self.wish = self._granted
+            self.corrections_changed()
+            sentence = f"not added: {sentence}"
         self.say(sentence)
 
     def _take(self, answer: Answer | None) -> None:
         self.answer = answer
         self.picked = None
+        self.marks.forget()
         self.picked_changed()
         self.answered()
         self.judged()
-
-
-def _settings(recording: Recording, motions: Motions | None) -> Settings:
-    """Those that the motions were made with; of motions from elsewhere, or none, the default's."""
-    made = motions.making.settings if motions is not None else {}
-    if not made:
-        return settings_of(recording, "default")
-    try:
-        return validated(Settings, made, source="settings of the motions")
-    except InputError:  # Made by another version.
-        return settings_of(recording, "default")

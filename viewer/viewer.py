@@ -7,6 +7,7 @@ from typing import Any
 from recording.cache import Cache
 from recording.motions import Motions
 from recording.recording import Recording
+from viewer.keeping import CorrectionsFile
 from viewer.panels.catalogue import PANELS, first_panel
 from viewer.panels.desk import Desk
 from viewer.scene import Scene
@@ -25,12 +26,13 @@ class Viewer:
         host: str = "127.0.0.1",
         port: int = 8080,
         cache: Cache | None = None,
+        file: CorrectionsFile | None = None,
     ) -> None:
         self.server = opened_server(host=host, port=port, label=recording.metadata.name or "unocclude")
         self._clock = asyncio.new_event_loop()
         self._clock.set_exception_handler(self._fail)
         self._failure: BaseException | None = None
-        self.session = Session(recording, motions, clock=self._clock, cache=cache)
+        self.session = Session(recording, motions, clock=self._clock, cache=cache, file=file)
         self.scene = Scene(self.server, self.session)
         desk = Desk(gui=self.server.gui, session=self.session, scene=self.scene)
         first_panel(desk)

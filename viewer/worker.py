@@ -1,7 +1,9 @@
 """Long work beside the viewer: one job after the other, in a thread that nobody waits for at the end."""
 
+import sys
 import threading
 from collections.abc import Callable
+from functools import partial
 from queue import SimpleQueue
 from typing import Generic, TypeVar
 
@@ -19,21 +21,35 @@ class Worker(Generic[Result]):
     def __init__(self, post: Post) -> None:
         self._post = post
         self._jobs: SimpleQueue[Action] = SimpleQueue()
-        threading.Thread(target=self._work, daemon=True).start()
+        self._begin()
 
     def do(self, job: Callable[[], Result], *, done: Callable[[Result], None], refused: Callable[[str], None]) -> None:
-        """Do the job when those before it are done, then `done` with its result, or `refused` with the sentence."""
+        """Do the job when those before it are done, then `done` with its result, or `refused` with the sentence.
+
+        A defect is refused too, in one line, and its traceback goes to standard error.
+        """
         self._jobs.put(lambda: self._do(job, done, refused))
 
+    def _begin(self) -> None:
+        threading.Thread(target=self._work, daemon=True).start()
+
     def _work(self) -> None:
-        while True:
-            self._jobs.get()()
+        try:
+            while True:
+                self._jobs.get()()
+        finally:
+            self._begin()  # A defect ends its thread with a traceback; the jobs after it are another one's.
 
     def _do(self, job: Callable[[], Result], done: Callable[[Result], None], refused: Callable[[str], None]) -> None:
+        outcome: Action | None = None
         try:
-            result = job()
+            outcome = partial(done, job())
         except InputError as error:
-            sentence = str(error)
-            self._post(lambda: refused(sentence))
-        else:
-            self._post(lambda: done(result))
+            outcome = partial(refused, str(error))
+        finally:
+            self._post(outcome or partial(refused, _line(sys.exception())))
+
+
+def _line(defect: BaseException | None) -> str:
+    told = " ".join(f"{type(defect).__name__}: {defect}".split())
+    return f"a defect in the program, whose traceback stands in the terminal: {told}"

@@ -17,6 +17,7 @@ from recording.errors import InputError
 
 Value = bool | int | float | str
 Design = Literal["grid", "one_at_a_time", "sobol", "random"]
+_MOST_POINTS = 100_000
 _DIGITS = 6
 """Significant digits of a value from a range."""
 
@@ -29,7 +30,7 @@ class Axis(Frozen):
     values: Annotated[tuple[Value, ...], Field(min_length=1)] | None = None
     first: float | None = Field(default=None, alias="from")
     last: float | None = Field(default=None, alias="to")
-    steps: PositiveInt | None = None
+    steps: Annotated[int, Field(ge=1, le=_MOST_POINTS)] | None = None
     """Values of a range, its ends among them; samples are drawn between the ends and need none."""
     scale: Literal["linear", "logarithmic"] = "linear"
     """Of a range: steps of equal difference, or of equal ratio."""
@@ -84,7 +85,7 @@ class Sweep(Frozen):
     """What replaces the preset's settings in every point."""
     design: Design = "grid"
     """All combinations; one axis at a time from the preset's values; or samples of the axes' ranges."""
-    samples: PositiveInt = 64
+    samples: Annotated[int, Field(ge=1, le=_MOST_POINTS)] = 64
     """Number of points of the designs `sobol` and `random`."""
     sampling_seed: NonNegativeInt = 0
     """Of those samples."""
@@ -100,6 +101,9 @@ class Sweep(Frozen):
             bare = next((name for name, axis in self.axes.items() if axis.values is None and not axis.steps), None)
             if bare is not None:
                 raise ValueError(f"expected the number of steps of the range of {bare!r}")
+        points = math.prod(len(axis.values or ()) or axis.steps or 1 for axis in self.axes.values())
+        if self.design == "grid" and points > _MOST_POINTS:
+            raise ValueError(f"expected {_MOST_POINTS} points at the most, got {points}: take another design")
         return self
 
 

@@ -1,5 +1,6 @@
 """The viewer in a real browser: it opens, plays, shows layers, picks a motion, solves anew and shows the change."""
 
+import shlex
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -12,9 +13,15 @@ from PIL import Image, ImageChops
 from playwright.sync_api import Locator, Page, expect
 from viser.transforms import SO3
 
+import unocclude
 from algorithm.staged import solve
 from recording.cache import Cache
+from recording.motions import Motions
+from recording.parquet import load_motions
+from recording.store import save_recording
+from viewer.keeping import CorrectionsFile
 from viewer.viewer import Viewer
+from viewer.wish import command
 
 Keep = Callable[[str], Path]
 PATIENCE_MS = 60_000.0
@@ -29,7 +36,8 @@ BESIDE = 120.0, 740.0
 def viewer(tmp_path_factory: pytest.TempPathFactory, own_cache: Path) -> Iterator[Viewer]:
     """A viewer of one person who passes behind a wall; its motions are judged."""
     scene, cache = passing_by(tmp_path_factory.mktemp("scene")), Cache(folder=own_cache)
-    viewer = Viewer(scene, solve(scene, SETTINGS, cache=cache), port=0, cache=cache)
+    file = CorrectionsFile(tmp_path_factory.mktemp("kept") / "corrections.toml")
+    viewer = Viewer(scene, solve(scene, SETTINGS, cache=cache), port=0, cache=cache, file=file)
     thread = threading.Thread(target=viewer.run)
     thread.start()
     until(lambda: viewer.session.answer is not None and viewer.session.answer.judgement is not None)
@@ -139,6 +147,54 @@ def test_a_slider_solves_anew_and_shows_the_change_of_the_scores(viewer: Viewer,
     opened.get_by_role("button", name="As opened").click()
     until(lambda: viewer.session.answer is viewer.session.opened)
     expect(opened.locator("td strong")).to_have_count(0)
+
+
+def test_a_pair_is_marked_solved_apart_saved_and_replayed(
+    viewer: Viewer, opened: Page, keep: Keep, tmp_path: Path
+) -> None:
+    session = viewer.session
+    assert session.file is not None
+    session.post(lambda: session.playback.go_to(0))
+    opened.get_by_role("tab", name="Corrections").click()
+    opened.mouse.click(*BESIDE)
+    opened.keyboard.press("m")
+    until(lambda: session.clicks == "mark")
+    opened.wait_for_timeout(SETTLING_MS)
+    opened.mouse.click(*on_screen(viewer, first_point(viewer)))
+    until(lambda: len(session.marks.known) == 1)
+    opened.get_by_label("Second").click()
+    opened.get_by_role("option").last.click()
+    until(lambda: len(session.marks.known) == 2)
+    opened.wait_for_timeout(SETTLING_MS)
+    keep("viewer_marked")
+    opened.get_by_role("button", name="different").click()
+    expect(opened.get_by_role("button", name="1. different")).to_be_visible(timeout=PATIENCE_MS)
+    expect(opened.locator("td strong").first).to_be_visible(timeout=PATIENCE_MS)
+    expect(opened.get_by_text("solved in")).to_be_visible(timeout=PATIENCE_MS)
+    keep("viewer_corrected")
+    opened.get_by_role("button", name="Save").click()
+    expect(opened.get_by_text("saved to")).to_be_visible()
+    assert session.answer is not None
+    assert len(session.answer.motions.motion_ids) == 2
+    shown = session.answer.motions
+    replayed = replay(viewer, tmp_path)
+    for column in ("frame", "trajectory", "segment", "motion", "position"):
+        np.testing.assert_array_equal(getattr(replayed, column), getattr(shown, column))
+    opened.get_by_role("button", name="last change").click()
+    until(lambda: session.answer is session.opened)
+    expect(opened.locator("td strong")).to_have_count(0)
+
+
+def replay(viewer: Viewer, folder: Path) -> Motions:
+    """The motions that the command line makes of the viewer's settings and its saved corrections."""
+    session = viewer.session
+    assert session.file is not None
+    save_recording(session.recording, folder / "recording")
+    line = command(session.wish, session.recording, session.file.path)
+    words = [str(folder / "recording") if word == "RECORDING" else word for word in shlex.split(line)[1:]]
+    with pytest.raises(SystemExit, match="0"):
+        unocclude.main([*words, "--quiet"])
+    return load_motions(folder / "recording" / "motions.parquet")
 
 
 def first_point(viewer: Viewer) -> np.ndarray:

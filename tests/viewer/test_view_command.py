@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import unocclude
+from recording.corrections import Corrections, save_corrections
 from recording.motions import Motions
 from recording.recording import Recording
 from viewer.viewer import Viewer
@@ -59,6 +60,14 @@ def test_motions_of_another_recording_are_refused(
     foreign = replace(solved, making=replace(solved.making, recording_digest="0" * 64))
     unocclude.save_motions(foreign, tmp_path / "other.parquet")
     assert "motions of another" in refusal(capsys, folder, tmp_path / "other.parquet")
+
+
+def test_corrections_of_another_recording_are_refused_where_they_are_asked_for(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    foreign = tmp_path / "other.toml"
+    save_corrections(Corrections(recording_digest="0" * 64), foreign)
+    assert "another one" in refusal(capsys, folder, "--corrections", foreign)
 
 
 def test_it_serves_until_it_is_stopped(

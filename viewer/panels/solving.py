@@ -11,6 +11,8 @@ from evaluation.report.definitions import NOTHING, dotted, meaning_of
 from evaluation.scores import Scores
 from viewer.answer import Answer
 from viewer.panels.desk import Desk
+from viewer.session import Session
+from viewer.wish import command
 
 _SCORES = (
     "motions.found",
@@ -26,6 +28,8 @@ _SCORES = (
     "completion.centre_mean_m",
     "completion.mean_m",
 )
+
+_DIGITS = 6
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,7 +69,7 @@ def solving_panel(desk: Desk) -> None:
     sliders = {name: _slider(desk, name, dial) for name, dial in DIALS.items()}
     status = gui.add_markdown(session.status)
     solve = gui.add_button("Solve", visible=session.answer is None, hint="This recording has no motions yet")
-    reset = gui.add_button("As opened", hint="The settings and motions that the viewer was opened with")
+    reset = gui.add_button("As opened", hint="The settings that the viewer was opened with")
     table = gui.add_markdown("")
 
     def changed() -> None:
@@ -80,7 +84,7 @@ def solving_panel(desk: Desk) -> None:
 
     def scored() -> None:
         solve.visible = session.answer is None
-        table.content = scores_table(session.opened, session.answer) + _command(desk)
+        table.content = scores_table(session.opened, session.answer) + command_text(session)
 
     desk.when_set(preset, session.want_preset)
     for name, slider in sliders.items():
@@ -89,7 +93,7 @@ def solving_panel(desk: Desk) -> None:
     reset.on_click(lambda _: session.post(session.reset))
     session.settings_changed.connect(changed)
     session.status_changed.connect(told)
-    for signal in (session.judged, session.settings_changed):
+    for signal in (session.judged, session.settings_changed, session.corrections_changed):
         signal.connect(scored)
     changed()
     scored()
@@ -110,7 +114,8 @@ def _slider(desk: Desk, name: str, dial: Dial) -> Any:
 
 
 def _dial(desk: Desk, name: str, value: float) -> None:
-    desk.session.want(changed_settings(desk.session.settings, {name: value}, source="slider"))
+    told = round(value, _DIGITS)  # The page counts steps in halves, quarters and so on, and misses by a trifle.
+    desk.session.want(changed_settings(desk.session.settings, {name: told}, source="slider"))
 
 
 def scores_table(opened: Answer | None, now: Answer | None) -> str:
@@ -136,12 +141,7 @@ def _signed(text: str) -> str:
     return text if text.startswith("-") else f"+{text}"
 
 
-def _command(desk: Desk) -> str:
-    """The command line that solves under these settings, where they are not those of the preset."""
-    settings = desk.session.settings
-    plain = Settings() if settings.preset == "default" else None
-    if plain is None:
-        return ""
-    changed = [name for name in DIALS if getattr(settings, name) != getattr(plain, name)]
-    options = "".join(f" --set {name}={getattr(settings, name):g}" for name in changed)
-    return f"\n\n`unocclude solve RECORDING{options}`" if options else ""
+def command_text(session: Session) -> str:
+    """The command line that solves alike, as Markdown."""
+    path = session.file.path if session.file is not None else None
+    return f"\n\nTo solve alike, RECORDING being the folder:\n\n`{command(session.wish, session.recording, path)}`"
