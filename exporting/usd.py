@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 from jaxtyping import Float, Float64
-from pxr import Gf, Sdf, Usd, UsdGeom, UsdShade, Vt
+from pxr import Gf, Usd, UsdGeom, Vt
 
 from exporting.source import Source, rgb
 from recording.camera import Camera
@@ -33,8 +33,8 @@ def write_usd(source: Source, folder: Path) -> None:
     """Write `<name>.usdc`: metres, the world's axes with z up, a time code a frame.
 
     `/World/Camera`; `/World/Truth/object_N`, the mesh of each object; in `/World/Motions/motion_N` the points
-    `motion_N_observed` and `motion_N_completed` of each frame and the curve `motion_N_way`. Noise is left out. A world of which nobody said which
-    way is up is turned, so that the camera's top is, and the file states y as the upward axis.
+    `motion_N_observed` and `motion_N_completed` of each frame and the curve `motion_N_way`. Noise is left out. A world
+    of which nobody said which way is up is turned, so that the camera's top is, and y is the file's upward axis.
     """
     if source.motions is None:
         source.needed_truth("usd")
@@ -99,7 +99,7 @@ def _new_meshes(stage: Usd.Stage, source: Source) -> dict[int, UsdGeom.Mesh]:
         mesh.CreateFaceVertexCountsAttr(Vt.IntArray.FromNumpy(np.full(len(known.faces), 3, np.int32)))
         mesh.CreateFaceVertexIndicesAttr(Vt.IntArray.FromNumpy(known.faces.reshape(-1)))
         mesh.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
-        _paint(stage, mesh, TRUTH, opacity=1.0)
+        _paint(mesh, TRUTH)
         if known.moving:
             moving[objectid] = mesh
         else:
@@ -118,7 +118,7 @@ def _new_clouds(stage: Usd.Stage, source: Source) -> dict[tuple[int, bool], UsdG
             cloud = UsdGeom.Points.Define(stage, f"{_motion_path(motion)}_{name}")
             cloud.CreateWidthsAttr(Vt.FloatArray([width]))
             cloud.SetWidthsInterpolation(UsdGeom.Tokens.constant)
-            _paint(stage, cloud, colour_of(motion), opacity=_PALE if completed else 1.0)
+            _paint(cloud, colour_of(motion), opacity=_PALE if completed else 1.0)
             clouds[motion, completed] = cloud
     for curve in [] if motions is None else _ways(motions):
         _add_way(stage, curve)
@@ -140,7 +140,7 @@ def _add_way(stage: Usd.Stage, curve: Representative) -> None:
     way.CreateCurveVertexCountsAttr(Vt.IntArray([len(curve.frame)]))
     way.CreateWidthsAttr(Vt.FloatArray([_WAY_M]))
     way.SetWidthsInterpolation(UsdGeom.Tokens.constant)
-    _paint(stage, way, colour_of(curve.motion), opacity=1.0)
+    _paint(way, colour_of(curve.motion))
     _set_points(way, curve.position, Usd.TimeCode.Default())
 
 
@@ -150,25 +150,9 @@ def _set_points(shape: UsdGeom.PointBased, points: Float[np.ndarray, "point 3"],
     shape.GetExtentAttr().Set(UsdGeom.PointBased.ComputeExtent(values), time)
 
 
-def _paint(stage: Usd.Stage, shape: UsdGeom.Gprim, colour: str, *, opacity: float) -> None:
-    """Give it the colour, both as a plain colour and as a material."""
-    shade = Gf.Vec3f(*(channel / 255 for channel in rgb(colour)))
-    shape.CreateDisplayColorAttr([shade])
+def _paint(shape: UsdGeom.Gprim, colour: str, *, opacity: float = 1.0) -> None:
+    """Give it a colour of the palette. USD has the colours of light, the palette those of screens (IEC 61966-2-1)."""
+    shade = np.array(rgb(colour)) / 255
+    light = np.where(shade <= 0.04045, shade / 12.92, ((shade + 0.055) / 1.055) ** 2.4)
+    shape.CreateDisplayColorAttr([Gf.Vec3f(*light.tolist())])
     shape.CreateDisplayOpacityAttr([opacity])
-    kind = "pale" if opacity < 1 else "full"
-    path = f"/World/Materials/{kind}_{colour.removeprefix('#')}"
-    material = UsdShade.Material.Get(stage, path)
-    if not material:
-        material = UsdShade.Material.Define(stage, path)
-        surface = UsdShade.Shader.Define(stage, f"{path}/Surface")
-        surface.CreateIdAttr("UsdPreviewSurface")
-        surface.CreateInput("diffuseColor", Sdf.ValueTypeNames.Color3f).Set(_linear(shade))
-        surface.CreateInput("opacity", Sdf.ValueTypeNames.Float).Set(opacity)
-        surface.CreateInput("roughness", Sdf.ValueTypeNames.Float).Set(0.8)
-        material.CreateSurfaceOutput().ConnectToSource(surface.ConnectableAPI(), "surface")
-    UsdShade.MaterialBindingAPI.Apply(shape.GetPrim()).Bind(material)
-
-
-def _linear(shade: Gf.Vec3f) -> Gf.Vec3f:
-    """The colour of light, as renderers reckon with; the palette's is that of screens (sRGB, IEC 61966-2-1)."""
-    return Gf.Vec3f(*(c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in shade))

@@ -87,7 +87,7 @@ def _plane(
     def level(model: LinearRegression, *_: np.ndarray) -> bool:
         if up is None:
             return True
-        return abs(float(model.coef_ @ up)) > np.cos(np.radians(_STEEPEST_DEG)) * float(np.linalg.norm(model.coef_))
+        return bool(abs(model.coef_ @ up) > np.cos(np.radians(_STEEPEST_DEG)) * np.linalg.norm(model.coef_))
 
     search = RANSACRegressor(
         LinearRegression(fit_intercept=False),

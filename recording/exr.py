@@ -4,7 +4,8 @@ import os
 import re
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stdout
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -169,11 +170,11 @@ def _promised(path: Path, shape: tuple[int, int]) -> list[int]:
 
 @contextmanager
 def _hushed() -> Iterator[None]:
-    """Within this block nothing appears on standard error: OpenEXR writes there what we say in words of ours.
+    """Within this block nothing is printed: OpenEXR writes what we say in words of ours, on both outputs.
 
-    It does so by the file's number, which all threads share: hence the lock.
+    It does so by the file's number, or by `sys.stdout`, which all threads share: hence the lock.
     """
-    with _ONE_AT_A_TIME:
+    with _ONE_AT_A_TIME, redirect_stdout(StringIO()):
         kept, nowhere = os.dup(2), os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, 2)
         try:

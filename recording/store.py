@@ -1,7 +1,10 @@
 """Recordings on disk: `recording.json`, `frames/`, `xray/`, `truth.npz`."""
 
 import os
+import struct
+import tokenize
 import zipfile
+import zlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import lru_cache
@@ -21,8 +24,11 @@ from recording.recording import Recording
 from recording.truth import MeshSequence, Truth
 from recording.xray import XRay
 
-_DAMAGED = (OSError, ValueError, EOFError, TypeError, KeyError, MemoryError, AttributeError, zipfile.BadZipFile)
-"""What reading an archive ends with that is none. TypeError, AttributeError: a bare array."""
+_DAMAGED = (
+    *(ArithmeticError, AttributeError, EOFError, LookupError, MemoryError, OSError, RuntimeError, SyntaxError),
+    *(TypeError, ValueError, struct.error, tokenize.TokenError, zipfile.BadZipFile, zlib.error),
+)
+"""What NumPy and zipfile end with where an archive is damaged, as fuzzing has shown."""
 
 
 def write_recording(

@@ -35,7 +35,7 @@ class RecordedCrowd(Frozen):
 
     file: str
     """Path from the scene's file; it stays in that file's folder or below."""
-    fps: Annotated[float, Field(gt=0)]
+    fps: Annotated[float, Field(ge=1e-3, le=1e6)]
     """The file's frames a second."""
     unit: Literal["m", "cm"] = "m"
     """Of x and y."""

@@ -12,6 +12,8 @@ from simulator.source_file import file_inside
 from simulator.trajectory_rows import METRES, Row, beginning, by_frames, rows_of, smoothed, turned
 from simulator.walk_record import Times, Waypoints, even_knots, recorded
 
+_LONGEST_S = 86_400.0
+
 
 class Trajectory(Frozen):
     """Which recorded person, and how the file is to be read."""
@@ -20,7 +22,7 @@ class Trajectory(Frozen):
     """Path from the scene's file; it stays in that file's folder or below."""
     id: int
     """The person's number in the file."""
-    fps: Annotated[float, Field(gt=0)]
+    fps: Annotated[float, Field(ge=1e-3, le=1e6)]
     """The file's frames a second."""
     unit: Literal["m", "cm"] = "m"
     """Of x and y."""
@@ -74,6 +76,8 @@ def recorded_walk(trajectory: Trajectory, folder: Path) -> tuple[Waypoints, Time
         )
     frames = [row[1][1] for row in rows]
     time = (own[:, 1] - beginning(path, (min(frames), max(frames)), trajectory.first_frame)) / trajectory.fps
+    if time[-1] - time[0] > _LONGEST_S:
+        raise InputError(f"{path}: expected id {trajectory.id} for a day at the most, got {time[-1] - time[0]:.3g} s")
     places = own[:, 2:] * METRES[trajectory.unit]
     knots = even_knots(time[0], time[-1])
     on_scene = turned(smoothed(time, places, knots), trajectory.turn_deg) + np.array(trajectory.shift)

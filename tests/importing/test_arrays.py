@@ -91,7 +91,7 @@ def test_a_damaged_member_is_refused(tmp_path: Path) -> None:
     content = bytearray((tmp_path / "a.npz").read_bytes())
     content[len(content) // 2] ^= 255
     (tmp_path / "a.npz").write_bytes(content)
-    assert "expected a whole archive, but Bad CRC-32" in refusal(tmp_path / "a.npz", tmp_path / "rec")
+    assert "Bad CRC-32" in refusal(tmp_path / "a.npz", tmp_path / "rec")
 
 
 def test_an_archive_of_other_things_is_refused(tmp_path: Path) -> None:

@@ -1,5 +1,6 @@
 """Wrong scenes, families, sweeps and data sets."""
 
+import shutil
 from pathlib import Path
 
 from case import Case, Damage, cut, keyed, linked, removed, replaced, written
@@ -37,7 +38,7 @@ SCENES = (
     Case(input="zero bytes", command=SMALL, damage=written("small.toml", ""), says="key 'name' is missing"),
     Case(input="truncated", command=SMALL, damage=cut("small.toml", 0.5), says="small.toml: "),
     Case(input="a key twice", command=SMALL, damage=small("fps = 15", "fps = 15\nfps = 15"), says="expected TOML"),
-    Case(input="an unknown key", command=SMALL, damage=small("fps = 15", "fsp = 15"), says="unknown key 'fsp'"),
+    Case(input="an unknown key", command=SMALL, damage=small("fps = 15", "fps = 15\nfsp = 15"), says="unknown key 'fsp'"),
     Case(
         input="nested 100,000 deep",
         command=SMALL,
@@ -161,15 +162,19 @@ SETS = (
         input="a recording that is missing",
         command=VERIFY_SET,
         damage=lambda place: (place / "set" / "tiny-000001").rename(place / "set" / "other"),
+        status=1,
         says="tiny-000001: expected a recording",
+        becomes="`verify` fails and names it; the others are verified",
     ),
     Case(
         input="frames that were changed",
         command=VERIFY_SET,
-        damage=lambda place: (place / "set/tiny-000001/frames/000000.exr").replace(
-            place / "set/tiny-000001/frames/000001.exr"
+        damage=lambda place: shutil.copy(
+            place / "set/tiny-000001/frames/000000.exr", place / "set/tiny-000001/frames/000001.exr"
         ),
-        says="000000.exr is missing",
+        status=1,
+        says="expected depths with the digest in manifest.json, got others",
+        becomes="`verify` fails and names it; the others are verified",
     ),
     Case(input="a sweep without axes", command=SWEEP, damage=replaced("sweep.toml", "eps3", "#"), says="axes"),
     Case(input="a sweep of no setting", command=SWEEP, damage=replaced("sweep.toml", "eps3", "eps9"), says="'eps9'"),
