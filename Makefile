@@ -1,5 +1,7 @@
 # make demo    simulate a crowd, solve it, score it, draw it
 # make test    the tests
+# make soak    the tests that take minutes: many kills, many random recordings, long and large scenes
+# make fuzz    changed files for every reader, MINUTES each
 # make check   formatting, lint, types, tests
 # Each makes .venv and installs what is missing first; a second call installs nothing.
 
@@ -8,14 +10,23 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 DEMO := demo
 WORKERS ?= 2
+MINUTES ?= 10
+READERS ?= scene family sweep settings corrections recording manifest frame xray truth motions bvh walks
 
-.PHONY: demo test check format clean
+.PHONY: demo test soak fuzz check format clean
 
 demo: $(READY)
 	$(BIN)/unocclude demo --output $(DEMO) --overwrite
 
 test: $(READY)
 	$(BIN)/pytest --numprocesses $(WORKERS)
+
+soak: $(READY)
+	$(BIN)/pytest -m soak
+
+fuzz: $(READY)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[fuzz]'
+	for reader in $(READERS); do $(BIN)/python fuzz/run.py $$reader --minutes $(MINUTES) || exit 1; done
 
 check: $(READY)
 	$(BIN)/ruff format --check .

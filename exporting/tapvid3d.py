@@ -9,11 +9,10 @@ pixel's centre at (0.5, 0.5), and frame; `fx_fy_cx_cy`; `images_jpeg_bytes`, her
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Protocol
 
 import cv2
 import numpy as np
-from jaxtyping import Bool, Float, Float32, Float64, UInt8
+from jaxtyping import Bool, Float32, Float64, UInt8
 
 from exporting.npz import Archive, new_archive
 from exporting.queries import Queries, chosen_rows, evenly_spread, first_seen, labels_at
@@ -47,18 +46,6 @@ def write_tapvid3d(source: Source, folder: Path) -> None:
         with _new_file(source, folder / "found", queries) as archive:
             archive.add("motion", queries.motion.astype(np.int32))
             _add_tracks(archive, source, _FoundTracks(source, queries))
-
-
-class _Tracks(Protocol):
-    """Places of points over time."""
-
-    def __len__(self) -> int: ...
-
-    def places(self, frame: int) -> Float[np.ndarray, "track 3"]:
-        """World axes, metres; NaN where nothing is known of a point."""
-
-    def visible(self, frame: int) -> Bool[np.ndarray, "track"]:
-        """Which of them the camera sees."""
 
 
 class _TrueTracks:
@@ -103,7 +90,7 @@ class _FoundTracks:
         return np.isin(self._trajectory, moment.trajectory[~moment.completed])
 
 
-def _add_tracks(archive: Archive, source: Source, tracks: _Tracks) -> None:
+def _add_tracks(archive: Archive, source: Source, tracks: _TrueTracks | _FoundTracks) -> None:
     shape = (source.frames, len(tracks))
     camera_from_world = np.linalg.inv(source.recording.camera.world_from_camera)
     places = (transformed(camera_from_world, tracks.places(frame)) for frame in source.numbers("tracks"))

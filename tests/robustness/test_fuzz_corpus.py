@@ -1,0 +1,44 @@
+"""The readers that are fuzzed: valid files are read, and files changed at random are read or refused."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from recording.errors import InputError
+
+ROOT = Path(__file__).parents[2]
+sys.path.insert(0, str(ROOT))
+from fuzz.targets import TARGETS  # noqa: E402 - it is no package of the program, hence the path first.
+
+CHANGED = 60
+
+
+def changed(content: bytes, generator: np.random.Generator) -> bytes:
+    """The file with some bytes set, cut out or doubled."""
+    data = bytearray(content)
+    for _ in range(generator.integers(1, 5)):
+        first, length = int(generator.integers(0, len(data) + 1)), int(generator.integers(1, 9))
+        kind = generator.integers(3)
+        part = generator.bytes(length) if kind == 0 else b"" if kind == 1 else bytes(data[first : first + length]) * 2
+        data[first : first + length] = part
+    return bytes(data)
+
+
+@pytest.mark.filterwarnings("ignore")  # What a library warns of is not what is tested here.
+@pytest.mark.parametrize("reader", TARGETS)
+def test_a_reader_reads_or_refuses(reader: str, tmp_path: Path) -> None:
+    target, generator = TARGETS[reader], np.random.default_rng(1)
+    seeds = target.seeds()
+    for content in seeds:
+        (tmp_path / target.name).write_bytes(content)
+        target.read(tmp_path)
+    known = ROOT / "fuzz" / "corpus" / reader
+    found = [path.read_bytes() for path in sorted(known.iterdir())] if known.is_dir() else []
+    for content in [*found, *(changed(seeds[0], generator) for _ in range(CHANGED))]:
+        (tmp_path / target.name).write_bytes(content)
+        try:
+            target.read(tmp_path)
+        except InputError as refusal:
+            assert "\n" not in str(refusal)
