@@ -22,8 +22,10 @@ _LEAVING, _VANISHING = 1.0, 6.0
 """The prices of an end without a continuation: at the border of the picture, and in its middle."""
 _SCRAP, _WHOLE = 0.02, 0.3
 """A segment with less than the first share of what a near one shows links nothing; beyond the second all counts."""
-_SURE = 0.3, 2.7, 0.2
-"""Of the logistic curve from margin and restlessness to confidence, fitted on development recordings."""
+_SURE = 0.5, 2.2, 0.16, 0.7
+"""Of the logistic curve from margin, restlessness and price to confidence, fitted on development recordings."""
+_STRANGE = 2.0
+"""From this price on a link is surprising even where nothing else is likelier: they may have turned round."""
 _RIVAL = 0.5
 """How fast the confidence of what was not chosen falls with what it would cost."""
 _LONG_SECONDS, _MANY = 0.5, 20.0
@@ -44,6 +46,8 @@ class Links:
     """How much dearer everything gets without a chosen link, or with another one: above 0 and below it."""
     restlessness: Float[np.ndarray, "link"]
     """Of what is linked, m^2 / s^3."""
+    price: Float[np.ndarray, "link"]
+    """As `Candidates` has it."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -68,7 +72,14 @@ def linked(possible: Candidates, standing: Standing) -> Links:
     for part in _components(possible, len(standing.begin)):
         chosen[part[_assigned(before[part], after[part], gain[part])]] = True
     margin = _margins(possible, gain, chosen)
-    return Links(before=before, after=after, chosen=chosen, margin=margin, restlessness=possible.restlessness)
+    return Links(
+        before=before,
+        after=after,
+        chosen=chosen,
+        margin=margin,
+        restlessness=possible.restlessness,
+        price=possible.price,
+    )
 
 
 def gains(possible: Candidates, standing: Standing) -> Float[np.ndarray, "link"]:
@@ -79,11 +90,12 @@ def gains(possible: Candidates, standing: Standing) -> Float[np.ndarray, "link"]
 
 
 def confidences(links: Links) -> Float[np.ndarray, "link"]:
-    """The probability that each link is right: the larger its margin, and the calmer what it links.
+    """The probability that each link is right: the larger its margin, the calmer what it links, the less surprising.
 
     Of one that was not chosen it is at most a half, and falls with what choosing it would cost.
     """
     evidence = _SURE[0] + _SURE[1] * np.log1p(np.maximum(links.margin, 0.0)) - _SURE[2] * np.log(links.restlessness)
+    evidence -= _SURE[3] * np.maximum(links.price - _STRANGE, 0.0)
     evidence = np.where(links.chosen, evidence, _RIVAL * np.minimum(links.margin, 0.0))
     return 1.0 / (1.0 + np.exp(-np.clip(evidence, -50.0, 50.0)))
 

@@ -52,3 +52,5 @@ figure.savefig("pictures/5_sweep.png", dpi=120)
 #
 #     [axes]
 #     longest_hole_seconds = [0.25, 0.5, 0.75, 1.0]
+#
+# Next: [6_torch_dataset.py](6_torch_dataset.py) turns recordings into training data.

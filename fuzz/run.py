@@ -11,7 +11,9 @@ from tempfile import TemporaryDirectory
 
 import atheris
 
-with atheris.instrument_imports(include=["algorithm", "evaluation", "recording", "simulator", "tomllib", "json", "zipfile"]):
+with atheris.instrument_imports(
+    include=["algorithm", "evaluation", "recording", "simulator", "tomllib", "json", "zipfile"]
+):
     sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
     from fuzz.targets import TARGETS
     from recording.errors import InputError

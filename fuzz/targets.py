@@ -3,13 +3,12 @@
 A reader may refuse with an `InputError`; whatever else it raises, or that it hangs or fills the memory, is a finding.
 """
 
-import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-sys.path[0] = str(Path(__file__).resolve().parents[1])
+import numpy as np
 
 from algorithm.settings import Settings, settings_from_file
 from evaluation.sweeps.plan import load_sweep
@@ -30,8 +29,6 @@ from simulator.order import Order
 from simulator.scene import load_scene
 from simulator.tracks import tracks_of
 from simulator.trajectory_file import Trajectory, recorded_walk
-
-import numpy as np
 
 SHAPE = (3, 4)
 SCENE = b"""name = "small"

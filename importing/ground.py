@@ -102,6 +102,8 @@ def _plane(
         search.fit(rays, inverse_depth)
     except ValueError:
         raise InputError("ground: expected a level plane, found none: leave --remove-ground out") from None
+    if not level(search.estimator_):  # Fitted once more, to all of its points.
+        raise InputError("ground: expected a level plane, found a steep one: leave --remove-ground out")
     return np.asarray(search.estimator_.coef_)
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import Field, PositiveInt, model_validator
+from pydantic import Field, model_validator
 
 from recording.camera import Camera, looking_at
 from recording.checks import Frozen, nearest_name, toml_document, validated

@@ -151,11 +151,33 @@ def test_two_who_may_have_changed_places_are_doubtful() -> None:
     assert found.margin == pytest.approx([0.3, -0.3, -0.3, 0.3])
 
 
+def test_what_is_surprising_is_doubtful() -> None:
+    none = np.zeros(3, int)
+    price = np.array([-3.0, 2.0, 6.0])
+    known = Links(
+        before=none,
+        after=none,
+        chosen=np.ones(3, bool),
+        margin=np.full(3, 4.0),
+        restlessness=np.ones(3),
+        price=price,
+    )
+    straight, usual, turned = confidences(known)
+    assert straight == usual > 0.9 > turned
+
+
 def test_confidence_rises_with_the_margin() -> None:
     margin = np.array([-1e4, -5.0, 0.0, 5.0, 1e4])
     none = np.zeros(5, int)
     sure = confidences(
-        Links(before=none, after=none, chosen=margin > 0, margin=margin, restlessness=np.ones(len(margin)))
+        Links(
+            before=none,
+            after=none,
+            chosen=margin > 0,
+            margin=margin,
+            restlessness=np.ones(len(margin)),
+            price=np.zeros(len(margin)),
+        )
     )
     assert (np.diff(sure) > 0).all()
     assert 0 <= sure[0] < 0.01

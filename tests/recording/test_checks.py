@@ -119,7 +119,9 @@ def test_a_damaged_json_document_is_refused(tmp_path: Path, content: bytes) -> N
         json_document(path)
 
 
-@pytest.mark.parametrize("content", [b"a = ", b"a = 1\na = 2", b"\xff\xfe\x00", b"a = " + b"[" * 100_000, b"a = " + b"9" * 5000])
+@pytest.mark.parametrize(
+    "content", [b"a = ", b"a = 1\na = 2", b"\xff\xfe\x00", b"a = " + b"[" * 100_000, b"a = " + b"9" * 5000]
+)
 def test_a_damaged_toml_document_is_refused(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "a.toml"
     path.write_bytes(content)

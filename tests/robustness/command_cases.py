@@ -15,6 +15,8 @@ COMMANDS = (
     Case(input="a folder for the motions", command="solve {place}/small -o {place}/set --overwrite", says="cannot be"),
     Case(input="a file for a folder", command="solve {place}/small -o {place}/tiny.toml/x", says="cannot be written"),
     Case(input="a forbidden place", command="solve {place}/small -o /proc/x.parquet", says="cannot be written"),
-    Case(input="a recording into itself", command="resense {place}/small --sensor tof -o {place}/small/x", says="another"),
+    Case(
+        input="a recording into itself", command="resense {place}/small --sensor tof -o {place}/small/x", says="another"
+    ),
     Case(input="no such sensor", command="resense {place}/small --sensor lidar -o {place}/out", says="lidar"),
 )

@@ -167,7 +167,9 @@ SETTINGS = (
     Case(input="no value", command=SET + "eps1", says="expected KEY=VALUE"),
     Case(input="a list nested 10,000 deep", command=SET + "eps1=" + "[" * 10_000, says="eps1: "),
     Case(input="no file", command=FILE, damage=removed("settings.toml"), says="expected a readable TOML file"),
-    Case(input="a file without an end", command=FILE, damage=linked("settings.toml", "/dev/zero"), says="more than 256"),
+    Case(
+        input="a file without an end", command=FILE, damage=linked("settings.toml", "/dev/zero"), says="more than 256"
+    ),
     Case(input="a key twice", command=FILE, damage=written("settings.toml", "eps3=1\neps3=2"), says="expected TOML"),
     Case(
         input="TOML nested 100,000 deep",
@@ -181,7 +183,9 @@ SETTINGS = (
         damage=written("settings.toml", "a." * 10_000 + "b = 1"),
         says="settings.toml: ",
     ),
-    Case(input="Latin-1", command=FILE, damage=written("settings.toml", "# gr\u00fcn".encode("latin-1")), says="no UTF-8"),
+    Case(
+        input="Latin-1", command=FILE, damage=written("settings.toml", "# gr\u00fcn".encode("latin-1")), says="no UTF-8"
+    ),
     Case(input="a date for a number", command=FILE, damage=written("settings.toml", "eps3=1999-01-01"), says="eps3: "),
 )
 CORRECTIONS = (
@@ -197,7 +201,9 @@ CORRECTIONS = (
         damage=replaced("corrections.toml", "version = 1", "version = 2"),
         says="format.version",
     ),
-    Case(input="a frame below 0", command=CORRECT, damage=marked("frame = -1, column = 1"), says="correction.0.one.frame"),
+    Case(
+        input="a frame below 0", command=CORRECT, damage=marked("frame = -1, column = 1"), says="correction.0.one.frame"
+    ),
     Case(
         input="a place beside the picture",
         command=CORRECT,

@@ -193,7 +193,7 @@ DESCRIPTION = (
     Case(
         input="a Unicode name",
         command=SOLVE,
-        damage=keyed("name", "Straße – 人波 🎈"),
+        damage=keyed("name", "Straße 人波 🎈"),
         status=0,
         says="solved",
         becomes="kept",
@@ -285,9 +285,13 @@ FRAMES = (
     ),
 )
 TRUTHS = (
-    Case(input="zero bytes", command=VERIFY, damage=written(TRUTH, ""), says="truth.npz: expected a NumPy .npz archive"),
+    Case(
+        input="zero bytes", command=VERIFY, damage=written(TRUTH, ""), says="truth.npz: expected a NumPy .npz archive"
+    ),
     Case(input="truncated", command=VERIFY, damage=cut(TRUTH, 0.5), says="truth.npz: "),
-    Case(input="foreign: text", command=VERIFY, damage=written(TRUTH, "hello"), says="truth.npz: expected a NumPy .npz"),
+    Case(
+        input="foreign: text", command=VERIFY, damage=written(TRUTH, "hello"), says="truth.npz: expected a NumPy .npz"
+    ),
     Case(input="pickles", command=VERIFY, damage=pickled, says="truth.npz: the mesh of object 1 is damaged"),
     Case(input="a zip bomb", command=VERIFY, damage=zip_bomb, says="truth.npz: the mesh of object 1 is damaged"),
     Case(input="an array of 72 TB", command=VERIFY, damage=array_bomb, says="the mesh of object 1 is damaged"),
@@ -343,4 +347,3 @@ LEFT = (
         becomes="removed",
     ),
 )
-

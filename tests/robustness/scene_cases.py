@@ -38,7 +38,9 @@ SCENES = (
     Case(input="zero bytes", command=SMALL, damage=written("small.toml", ""), says="key 'name' is missing"),
     Case(input="truncated", command=SMALL, damage=cut("small.toml", 0.5), says="small.toml: "),
     Case(input="a key twice", command=SMALL, damage=small("fps = 15", "fps = 15\nfps = 15"), says="expected TOML"),
-    Case(input="an unknown key", command=SMALL, damage=small("fps = 15", "fps = 15\nfsp = 15"), says="unknown key 'fsp'"),
+    Case(
+        input="an unknown key", command=SMALL, damage=small("fps = 15", "fps = 15\nfsp = 15"), says="unknown key 'fsp'"
+    ),
     Case(
         input="nested 100,000 deep",
         command=SMALL,
@@ -70,8 +72,14 @@ SCENES = (
     Case(input="an unknown sensor", command=SMALL + " --sensor kinect", says="sensor"),
     Case(input="an unknown body", command=SMALL, damage=small('"man"', '"giant"'), says="people.0.body"),
     Case(input="a recording that exists", command=SMALL.replace("/out", ""), says="pass --overwrite to replace it"),
-    Case(input="a file in the recording's place", command=SMALL.replace("/out", "/small.toml"), says="cannot be written"),
-    Case(input="a place that nobody can write to", command=SMALL.replace("{place}/out", "/proc/x"), says="cannot be written"),
+    Case(
+        input="a file in the recording's place", command=SMALL.replace("/out", "/small.toml"), says="cannot be written"
+    ),
+    Case(
+        input="a place that nobody can write to",
+        command=SMALL.replace("{place}/out", "/proc/x"),
+        says="cannot be written",
+    ),
 )
 FILES = (
     Case(input="a path that escapes", command=WALKED, damage=walked("'../x.txt'"), says="scene's folder"),
@@ -80,7 +88,12 @@ FILES = (
     Case(input="a link to itself", command=WALKED, damage=linked("walks.txt", "walks.txt"), says="walks.txt"),
     Case(input="a name with NUL", command=WALKED, damage=walked('"a\\u0000b"'), says="expected the path of a file"),
     Case(input="a device", command=WALKED, damage=walked('"/dev/zero"'), says="scene's folder"),
-    Case(input="trajectories: no file", command=WALKED, damage=removed("walks.txt"), says="walks.txt: expected a readable"),
+    Case(
+        input="trajectories: no file",
+        command=WALKED,
+        damage=removed("walks.txt"),
+        says="walks.txt: expected a readable",
+    ),
     Case(input="trajectories: zero bytes", command=WALKED, damage=written("walks.txt", ""), says="got none"),
     Case(input="trajectories: foreign", command=WALKED, damage=written("walks.txt", b"\xff\xd8\xff"), says="no UTF-8"),
     Case(input="trajectories: words", command=WALKED, damage=written("walks.txt", "1 2 3 4\na b c d"), says="line 2"),
@@ -135,8 +148,15 @@ FILES = (
 )
 SETS = (
     Case(input="an unknown family", command="generate crowdy --count 1 -o {place}/out", says="'crowded'?"),
-    Case(input="a range upside down", command=GENERATE, damage=replaced("tiny.toml", "= 1\n", "= [2, 1]\n"), says="range"),
-    Case(input="a billion people", command=GENERATE, damage=replaced("tiny.toml", "= 1\n", "= 1000000000\n"), says="count"),
+    Case(
+        input="a range upside down", command=GENERATE, damage=replaced("tiny.toml", "= 1\n", "= [2, 1]\n"), says="range"
+    ),
+    Case(
+        input="a billion people",
+        command=GENERATE,
+        damage=replaced("tiny.toml", "= 1\n", "= 1000000000\n"),
+        says="count",
+    ),
     Case(input="no recordings", command=GENERATE.replace("--count 1", "--count 0"), says="--count"),
     Case(input="a negative seed", command=GENERATE + " --seed -1", says="--seed"),
     Case(input="a manifest of zero bytes", command=VERIFY_SET, damage=written("set/manifest.json", ""), says="JSON"),
@@ -191,4 +211,3 @@ SETS = (
         says="samples",
     ),
 )
-

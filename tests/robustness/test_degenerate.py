@@ -66,8 +66,14 @@ SCENES: dict[str, tuple[Callable[[], Recording], tuple[int, int]]] = {
         lambda: recording_of(list(np.random.default_rng(1).uniform(0.5, 9, (12, 24, 32)))),
         (0, 60),
     ),
-    "the nearest depths there are": (lambda: recording_of([np.full((12, 16), 1e-4 * (1 + f)) for f in range(8)]), (0, 1)),
-    "the farthest depths there are": (lambda: recording_of([np.full((12, 16), 1e5 - 1e3 * f) for f in range(8)]), (0, 1)),
+    "the nearest depths there are": (
+        lambda: recording_of([np.full((12, 16), 1e-4 * (1 + f)) for f in range(8)]),
+        (0, 1),
+    ),
+    "the farthest depths there are": (
+        lambda: recording_of([np.full((12, 16), 1e5 - 1e3 * f) for f in range(8)]),
+        (0, 1),
+    ),
 }
 
 

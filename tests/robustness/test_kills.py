@@ -24,7 +24,18 @@ COMMANDS = {
     "simulate": ["simulate", "{place}/small.toml", "-o", "{out}", "--backend", "scalar"],
     "import": ["import", "{place}/images", *FOCAL, "-o", "{out}/images"],
     "solve": ["solve", "{place}/small", "-o", "{out}/motions.parquet", "--no-cache"],
-    "generate": ["generate", "{place}/tiny.toml", "--count", "2", "-o", "{out}", "--backend", "scalar", "--workers", "1"],
+    "generate": [
+        "generate",
+        "{place}/tiny.toml",
+        "--count",
+        "2",
+        "-o",
+        "{out}",
+        "--backend",
+        "scalar",
+        "--workers",
+        "1",
+    ],
 }
 
 
