@@ -31,6 +31,8 @@ _HIDDEN_PRICE = 1.0
 """Of a second of being hidden: holes are short more often than long."""
 _HEIGHT_M = 0.05
 """Standard deviation of the height of a body between two segments."""
+_HEIGHT_PRICE = 4.0
+"""No difference of height is dearer: what is seen from above shows its feet now and then, and so another "height"."""
 _SEEN = 0.8
 """Frames with more than this share of the full area show the height."""
 _AS_LARGE = 1.6
@@ -152,7 +154,8 @@ def _difference(one: SegmentFrames, other: SegmentFrames) -> float:
     tops = [rows.high[rows.area >= _SEEN * area, -1] for rows, area in zip((one, other), areas, strict=True)]
     middle = [float(np.median(top)) for top in tops]
     unsteady = sum(float(np.mean(np.abs(top - usual))) ** 2 for top, usual in zip(tops, middle, strict=True))
-    return float(2.5 * np.log1p((middle[0] - middle[1]) ** 2 / (4 * _HEIGHT_M**2 + unsteady)))
+    surprise = 2.5 * np.log1p((middle[0] - middle[1]) ** 2 / (4 * _HEIGHT_M**2 + unsteady))
+    return float(min(surprise, _HEIGHT_PRICE))
 
 
 def _extent(one: SegmentFrames) -> float:

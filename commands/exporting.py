@@ -22,12 +22,15 @@ def export_command(
 ) -> None:
     """Write a recording and its motions in another tool's format, into a new folder (docs/exporting.md).
 
-    Examples:
-    * `unocclude export recordings/wall --format ply -o wall-ply`: a point cloud a frame
-    * `unocclude export recordings/wall --format usd -o wall-usd`: an animation for Blender
-    * `unocclude export recordings/wall --format rerun -o wall-rerun`: for the Rerun viewer
-    * `unocclude export recordings/wall --format tapvid3d -o wall-tracks`: tracks of points, found and true
-    * `unocclude export recordings/wall --format mot -o wall-mot`: places in 3D, found and true
+    Example: `unocclude export recordings/wall --format usd -o wall-usd`
+
+    Formats:
+
+    * `ply`: a point cloud a frame
+    * `usd`: an animation for Blender
+    * `rerun`: depth, points and truth for the Rerun viewer
+    * `tapvid3d`: tracks of points, found and true
+    * `mot`: places in 3D as MOTChallenge text, found and true
 
     Args:
         recording: The recording's folder.

@@ -28,7 +28,9 @@ class DepthClips:
 
     def __init__(self, recordings: Sequence[unocclude.Recording]) -> None:
         self._recordings = recordings
-        self._starts = [(which, start) for which, of in enumerate(recordings) for start in range(len(of.frames) - CLIP + 1)]
+        self._starts = [
+            (which, start) for which, of in enumerate(recordings) for start in range(len(of.frames) - CLIP + 1)
+        ]
 
     def __len__(self) -> int:
         return len(self._starts)

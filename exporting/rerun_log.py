@@ -10,6 +10,8 @@ from recording.motions import NOISE, mean_places
 from recording.palette import TRUTH, colour_of
 
 APPLICATION = "unocclude"
+FRAMES_AT_ONCE = 32
+"""So many frames are in memory before they are written."""
 _SEEN_M, _COMPLETED_M = 0.008, 0.012
 """Radii of points, as in all pictures those that nobody saw are larger, and pale."""
 _PALE = 110
@@ -40,6 +42,8 @@ def write_rerun(source: Source, folder: Path) -> None:
         for objectid, mesh in (source.recording.truth or {}).items():
             if mesh.moving:
                 log.log(f"world/truth/{objectid}", rr.Mesh3D.from_fields(vertex_positions=mesh.vertices_at(frame)))
+        if frame % FRAMES_AT_ONCE == 0:
+            log.flush()
     log.disconnect()
 
 

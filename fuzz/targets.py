@@ -16,16 +16,16 @@ from recording.camera import Camera
 from recording.corrections import Anchor, Correction, Corrections, load_corrections, save_corrections
 from recording.exr import read_frame, read_xray
 from recording.frame import Frame, Labels
-from recording.manifest import load_manifest
+from recording.manifest import Entry, FamilyRecord, Manifest, ManifestFormat, ObjectCounts, load_manifest
 from recording.metadata import metadata_of
 from recording.motions import Event, Link, Making, Motions, mean_places
+from recording.occlusion import Achieved, Holes, Nearness
 from recording.parquet import load_motions, save_motions
 from recording.recording import Recording
 from recording.store import load_recording, save_recording
 from recording.truth import MeshSequence
 from simulator.bvh import read_bvh
 from simulator.family import load_family
-from simulator.order import Order
 from simulator.scene import load_scene
 from simulator.tracks import tracks_of
 from simulator.trajectory_file import Trajectory, recorded_walk
@@ -129,14 +129,29 @@ def _corrections_file() -> list[bytes]:
 
 
 def _manifest() -> list[bytes]:
-    """That of a data set of the tiny family."""
-    from simulator.generate import generate  # noqa: PLC0415 - slow to import, and only here.
-
-    with TemporaryDirectory() as folder:
-        (Path(folder) / "tiny.toml").write_bytes(FAMILY)
-        order = Order(family=load_family(Path(folder) / "tiny.toml"), folder=Path(folder) / "set")
-        generate(order, seeds=[1], backend="scalar")
-        return [(Path(folder) / "set" / "manifest.json").read_bytes()]
+    achieved = Achieved(
+        object_frames=2,
+        hidden_object_frames=0,
+        hole_frames=Holes(count=0, lengths=()),
+        clearance_m=Nearness(people=None, obstacles=None),
+    )
+    entry = Entry(
+        name="tiny-000001",
+        seed=1,
+        split="development",
+        frames=2,
+        fps=15.0,
+        width=4,
+        height=3,
+        sensor="ideal",
+        objects=ObjectCounts(moving=1, people=1, still=0),
+        scene_digest="0",
+        digest="0",
+        achieved=achieved,
+    )
+    family = FamilyRecord(name="tiny", digest="0", document={"name": "tiny"})
+    manifest = Manifest(format=ManifestFormat(), family=family, made_by="unocclude", recordings=(entry,))
+    return [manifest.text.encode()]
 
 
 def _read_all(folder: Path) -> None:

@@ -198,6 +198,7 @@ def test_wrong_input_gets_one_line_and_status_2(
         "figure",
         "compare",
         "report",
+        "export",
         "doctor",
     ],
 )

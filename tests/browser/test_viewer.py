@@ -49,7 +49,7 @@ def viewer(tmp_path_factory: pytest.TempPathFactory, own_cache: Path) -> Iterato
 @pytest.fixture
 def opened(viewer: Viewer, page: Page) -> Page:
     """The viewer's page, as it is at first."""
-    page.goto(viewer.address)
+    page.goto(viewer.address, timeout=PATIENCE_MS)
     expect(page.get_by_role("button", name="Play")).to_be_visible(timeout=PATIENCE_MS)
     until(lambda: len(viewer.server.get_clients()) > 0)
     page.locator(".mantine-Notification-closeButton").first.click(timeout=PATIENCE_MS)  # There is no graphics card.

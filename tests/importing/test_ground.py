@@ -29,7 +29,7 @@ def world(camera: Camera, *, wobble_m: float, wall: bool = False) -> tuple[np.nd
     down = rays @ camera.world_from_camera[2, :3]
     floor = np.where(down < -1e-3, -camera.position[2] / np.minimum(down, -1e-3), np.inf)
     if wall:
-        floor = np.minimum(floor, 2.2 / np.maximum(rays @ camera.world_from_camera[1, :3], 1e-3))
+        floor = np.minimum(floor, 2.7 / np.maximum(rays @ camera.world_from_camera[1, :3], 1e-3))
     camera_from_world = np.linalg.inv(camera.world_from_camera)
     depths, boxes = [], []
     for number in range(FRAMES):
@@ -65,7 +65,7 @@ def test_the_floor_goes_and_the_box_stays(camera: Camera, wobble_m: float) -> No
 def test_where_up_is_known_a_larger_wall_is_no_ground() -> None:
     depths, _ = world(HIGH, wobble_m=0.0, wall=True)
     assert ground_of(source_of(depths), HIGH, up_is_known=True).distance_m == pytest.approx(3.0, abs=0.1)
-    assert ground_of(source_of(depths), HIGH, up_is_known=False).distance_m == pytest.approx(2.2, abs=0.1)
+    assert ground_of(source_of(depths), HIGH, up_is_known=False).distance_m == pytest.approx(2.7, abs=0.1)
 
 
 def test_what_lies_below_the_ground_goes_too_and_nothing_stays_nothing() -> None:

@@ -51,7 +51,7 @@ SCENES: dict[str, tuple[Callable[[], Recording], tuple[int, int]]] = {
     "two frames": (lambda: ball(2), (0, 0)),
     "one point": (lambda: recording_of([one_point(frame) for frame in range(12)]), (0, 1)),
     "nothing moves": (lambda: recorded([WALL], frames=12, moving=[False], camera=CAMERA), (0, 0)),
-    "everything moves alike": (alike, (0, 4)),
+    "everything moves alike": (alike, (0, 12)),
     "one object for ever hidden": (hidden_for_ever, (0, 3)),
     "all points lost in the middle frame": (
         lambda: changed(ball(30), lambda number, depth: np.where(number == 15, np.nan, depth)),
