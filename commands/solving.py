@@ -35,7 +35,7 @@ def solve_command(
 ) -> None:
     """Find the motions in a recording and complete them where they were hidden.
 
-    Examples: `unocclude solve recordings/wall --preset paper --set eps3=5`
+    Example: `unocclude solve recordings/wall --preset paper --set eps3=5`
 
     `unocclude solve recordings/9men --corrections recordings/9men/corrections.toml`
 

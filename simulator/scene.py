@@ -26,7 +26,7 @@ from simulator.things import Ball, Obstacle, Person, Point, Positive
 from simulator.trajectory_file import with_recorded_walks
 
 NotNegative = Annotated[float, Field(ge=0)]
-FrameCount = Annotated[int, Field(ge=1, le=100_000)]
+FrameCount = Annotated[int, Field(gt=0, le=100_000)]
 """Who needs more wants several scenes: everybody's mesh in every frame is in memory."""
 
 

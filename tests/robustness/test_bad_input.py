@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 from case import Case, bench
 from cases import GROUPS
-from jaxtyping import config
 
 import unocclude
 
@@ -31,12 +30,6 @@ def ended(arguments: list[str]) -> int:
     except SystemExit as stop:
         return int(stop.code or 0)
     return 0
-
-
-@pytest.fixture
-def _without_type_checks(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The checker looks into sequences at random, hence reads frames before anyone asks for them."""
-    monkeypatch.setattr(config, "jaxtyping_disable", True)
 
 
 @pytest.mark.usefixtures("_without_type_checks")

@@ -28,6 +28,7 @@ def changed(content: bytes, generator: np.random.Generator) -> bytes:
 
 
 @pytest.mark.filterwarnings("ignore")  # What a library warns of is not what is tested here.
+@pytest.mark.usefixtures("_without_type_checks")
 @pytest.mark.parametrize("reader", TARGETS)
 def test_a_reader_reads_or_refuses(reader: str, tmp_path: Path) -> None:
     target, generator = TARGETS[reader], np.random.default_rng(1)
