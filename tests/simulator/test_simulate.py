@@ -158,7 +158,7 @@ def test_picture_sizes_are_read() -> None:
     ("wish", "sentence"),
     [
         ({"frames": 0}, "frames: input should be greater than 0"),
-        ({"size": (0, 5)}, "camera.width: input should be greater than 0"),
+        ({"size": (0, 5)}, "camera.width: input should be greater than or equal to 1"),
         ({"sensor": "kinect"}, "sensor.preset: input should be 'ideal'"),
     ],
 )
