@@ -5,33 +5,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from crossing import CROSSING
 from playwright.sync_api import Locator, Page, expect
 
 import unocclude
 
-SCENE = """
-name = "small"
-frames = 40
-fps = 15
-[camera]
-width = 96
-height = 72
-position = [0, -5, 1.2]
-look_at = [0, 0, 1]
-horizontal_fov_deg = 60
-[[people]]
-body = "man"
-waypoints = [[-2, 0.3], [2, 0.3]]
-speed = 1.4
-[[people]]
-body = "woman"
-waypoints = [[2, 1.4], [-2, 1.4]]
-speed = 1.4
-[[obstacles]]
-shape = "box"
-size = [0.8, 0.1, 2.0]
-position = [0, -0.8, 0]
-"""
 OPENS_S = 3.0
 HEADINGS = ["Summary", "Failures first", "The scene in 3D", "Each hole", "Error against hole length"]
 
@@ -40,7 +18,7 @@ HEADINGS = ["Summary", "Failures first", "The scene in 3D", "Each hole", "Error 
 def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The report of two people who pass behind a box, made by the command line."""
     folder = tmp_path_factory.mktemp("report")
-    (folder / "small.toml").write_text(SCENE, encoding="utf-8")
+    (folder / "small.toml").write_text(CROSSING, encoding="utf-8")
     for command in (
         ["simulate", folder / "small.toml", "-o", folder, "--backend", "scalar"],
         ["solve", folder / "small", "--set", "eps4=3"],

@@ -6,6 +6,7 @@ from xml.etree import ElementTree
 import cv2
 import numpy as np
 import pytest
+from crossing import CROSSING
 from matplotlib.figure import Figure
 
 from algorithm.pipeline import solve
@@ -21,36 +22,12 @@ from recording.recording import Recording
 from simulator.scene import Scene, load_scene
 from simulator.simulate import simulate
 
-SCENE = """
-name = "small"
-frames = 40
-fps = 15
-[camera]
-width = 96
-height = 72
-position = [0, -5, 1.2]
-look_at = [0, 0, 1]
-horizontal_fov_deg = 60
-[[people]]
-body = "man"
-waypoints = [[-2, 0.3], [2, 0.3]]
-speed = 1.4
-[[people]]
-body = "woman"
-waypoints = [[2, 1.4], [-2, 1.4]]
-speed = 1.4
-[[obstacles]]
-shape = "box"
-size = [0.8, 0.1, 2.0]
-position = [0, -0.8, 0]
-"""
-
 
 @pytest.fixture(scope="module")
 def recording(tmp_path_factory: pytest.TempPathFactory) -> Recording:
     """Two people cross behind a small wall."""
     path = tmp_path_factory.mktemp("scene") / "small.toml"
-    path.write_text(SCENE, encoding="utf-8")
+    path.write_text(CROSSING, encoding="utf-8")
     scene = load_scene(path)
     assert isinstance(scene, Scene)
     return simulate(scene)

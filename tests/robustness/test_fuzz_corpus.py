@@ -31,6 +31,7 @@ def changed(content: bytes, generator: np.random.Generator) -> bytes:
 @pytest.mark.usefixtures("_without_type_checks")
 @pytest.mark.parametrize("reader", TARGETS)
 def test_a_reader_reads_or_refuses(reader: str, tmp_path: Path) -> None:
+    """Anything but an `InputError` that a reader raises fails this; so does one at a valid file."""
     target, generator = TARGETS[reader], np.random.default_rng(1)
     seeds = target.seeds()
     for content in seeds:
