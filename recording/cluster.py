@@ -74,10 +74,11 @@ def finished(
     what brings its workers down when it is alone has failed. With `at_once` the scheduler hears of so many at a time.
     """
     waiting = list(wanted)
-    for width in (at_once or len(waiting), len(client.scheduler_info(n_workers=-1)["workers"]), 1):
+    for width in (at_once or len(waiting), None, 1):
+        workers = len(client.scheduler_info(n_workers=-1)["workers"])  # Its answer comes after the blame is forgotten.
         blamed = []
-        for one in _tried(client, tasks, waiting, max(width, 1)):
-            if one.failure == _KILLED and width > 1:
+        for one in _tried(client, tasks, waiting, max(width or workers, 1)):
+            if one.failure == _KILLED and width != 1:
                 blamed.append(one.key)
             else:
                 yield one
@@ -90,8 +91,9 @@ def _tried(client: Client, tasks: Mapping[str, Task], wanted: Sequence[str], at_
     pool = as_completed(_futures(client, tasks, list(islice(waiting, at_once))))
     try:
         for batch in pool.batches():
+            fetched = _fetched(client, batch)  # Before more is begun, which may bring the worker down that holds them.
             pool.update(_futures(client, tasks, list(islice(waiting, len(batch)))))
-            for future, values in _fetched(client, batch):
+            for future, values in fetched:
                 if values:
                     yield Finished(key=str(future.key), value=values[0])
                 elif future.status == "error":

@@ -57,6 +57,7 @@ def test_a_task_that_brings_its_workers_down_fails_alone(client: Client) -> None
     tasks = {name: Task(name, died, 10, number) for number, name in enumerate(names)}
     done = by_key(finished(client, tasks, names))
     assert done.pop("deadly-4").failure.startswith("KilledWorker: ")
+    assert [one for one in done.values() if one.failure] == []
     assert sorted(one.value for one in done.values()) == [10, 11, 12, 13, *range(15, 22)]
 
 
