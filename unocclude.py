@@ -15,6 +15,7 @@ import sys
 try:
     from cyclopts import App
 
+    from algorithm.estimate import estimated
     from algorithm.settings import Settings, preset_settings
     from algorithm.staged import solve
     from commands import drawing, exporting, importing, judging, making, reporting, solving, starting, sweeping, viewing
@@ -58,6 +59,7 @@ __all__ = [
     "Settings",
     "causes_of",
     "depth_recording",
+    "estimated",
     "evaluate",
     "export",
     "flow_between",

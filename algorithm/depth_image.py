@@ -24,11 +24,11 @@ def depth_range(depths: Sequence[Float32[np.ndarray, "row column"]]) -> DepthRan
     The range is that of the whole recording: with a range for each frame grey would change with who
     enters the picture.
     """
-    present = [depth[np.isfinite(depth)] for depth in depths]
-    present = [values for values in present if values.size]
-    if not present:
-        return 0.0, 1.0
-    return float(min(map(np.min, present))), float(max(map(np.max, present)))
+    nearest, farthest = np.inf, -np.inf
+    for depth in depths:
+        present = depth[np.isfinite(depth)]
+        nearest, farthest = min(nearest, present.min(initial=np.inf)), max(farthest, present.max(initial=-np.inf))
+    return (float(nearest), float(farthest)) if nearest <= farthest else (0.0, 1.0)
 
 
 def grey_image(depth: Float32[np.ndarray, "row column"], *, within: DepthRange) -> UInt8[np.ndarray, "row column"]:

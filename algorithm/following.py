@@ -6,7 +6,7 @@ between the pixels, and its depth is read anew from the surface that it has arri
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from itertools import pairwise
 
 import numpy as np
@@ -15,9 +15,9 @@ from jaxtyping import Bool, Float32, Float64, Int64
 from algorithm.compiled import compiled
 from algorithm.lifting import SceneFlow
 from algorithm.noise import surface_noise_m
+from algorithm.observations import Observations
 from algorithm.sampling import on_surface
 from algorithm.stopwatch import Stopwatch
-from algorithm.trajectories import Trajectories
 from recording.camera import PIXEL_CENTRE, Camera
 
 Depth = Float32[np.ndarray, "row column"]
@@ -70,8 +70,8 @@ def followed(
     camera: Camera,
     tolerances: Tolerances,
     watch: Stopwatch,
-) -> Trajectories:
-    """Every moving point, on its trajectory; `flows` lead forward and backward between consecutive frames.
+) -> list[Observations]:
+    """Every moving point of every frame; `flows` lead forward and backward between consecutive frames.
 
     A point ends where its flow or its surface is not known, where the way back does not lead home, and where its
     step leaves the running mean of its steps. Of points that meet the oldest goes on; where none lies a new one begins.
@@ -79,7 +79,7 @@ def followed(
     tolerances = tolerances.under_noise(surface_noise_m(depths))
     points = _begun(depths[0], np.isfinite(depths[0]), first=0)
     count = len(points.number)
-    history = [points]
+    history = [_observed(points, points.column_row)]
     for pair, both in zip(pairwise(depths), flows, strict=True):
         with watch.stage("match"):
             points = _advanced(points, pair, both, camera, tolerances)
@@ -88,8 +88,17 @@ def followed(
             fresh = _begun(pair[1], free, first=count)
             count += len(fresh.number)
             points = _joined(points, fresh)
-            history.append(replace(points, column_row=_seen_at(pair[1], points, tolerances.surface_m)))
-    return _trajectories(history, camera)
+            history.append(_observed(points, _seen_at(pair[1], points, tolerances.surface_m)))
+    return history
+
+
+def _observed(points: _Points, column_row: Float64[np.ndarray, "point 2"]) -> Observations:
+    """What is remembered of the points: their places in the picture, and how far they are."""
+    return Observations(
+        number=points.number.astype(np.int32),
+        column_row=column_row.astype(np.float32),
+        depth=points.depth.astype(np.float32),
+    )
 
 
 def _begun(depth: Depth, where: Bool[np.ndarray, "row column"], *, first: int) -> _Points:
@@ -231,18 +240,3 @@ def _drawn_in(image: np.ndarray, place: np.ndarray, depth: np.ndarray, surface_m
                         nearest = square
                         drawn[k] = x, y
     return drawn
-
-
-def _trajectories(history: list[_Points], camera: Camera) -> Trajectories:
-    """The points of all frames by trajectory, then frame."""
-    number = np.concatenate([points.number for points in history])
-    frame = np.repeat(np.arange(len(history)), [len(points.number) for points in history])
-    order = np.lexsort((frame, number))
-    column_row = np.concatenate([points.column_row for points in history])[order]
-    depth = np.concatenate([points.depth for points in history])[order]
-    return Trajectories(
-        trajectory=number[order],
-        frame=frame[order],
-        position=camera.world_from_pixel(column_row, depth),
-        column_row=column_row,
-    )

@@ -1,6 +1,6 @@
-"""The flows of a whole recording, kept where something moves: a few megabytes in place of hundreds."""
+"""Flows kept where something moves: a few megabytes in place of hundreds."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,18 +35,27 @@ class MovingFlows:
         return SceneFlow(column_row=every[..., :2], depth=every[..., 2])
 
 
-def moving_flows(flows: Iterable[ThereAndBack], moving: Sequence[Depth]) -> MovingFlows:
-    """The flows between consecutive frames, less what they say of pixels without a depth in `moving`."""
-    pixels, values = [], []
-    for a, (forward, backward) in enumerate(flows):
-        for flow, depth in ((forward, moving[a]), (backward, moving[a + 1])):
+class FlowsBegun:
+    """The flows of some pairs of frames, while they are being made."""
+
+    def __init__(self, shape: tuple[int, int]) -> None:
+        self._shape = shape
+        self._pixels = [np.zeros(0, np.int32)]
+        self._values = [np.zeros((0, 3), np.float32)]
+
+    def add(self, both: ThereAndBack, moving: tuple[Depth, Depth]) -> None:
+        """Take the next pair's flows in, less what they say of pixels without a depth in `moving`."""
+        for flow, depth in zip(both, moving, strict=True):
             pixel = np.flatnonzero(np.isfinite(depth))
-            pixels.append(pixel.astype(np.int32))
-            both = np.concatenate([flow.column_row, flow.depth[..., None]], axis=-1)
-            values.append(both.reshape(-1, 3)[pixel].astype(np.float32))
-    return MovingFlows(
-        shape=(moving[0].shape[0], moving[0].shape[1]),
-        begin=np.cumsum([0, *map(len, pixels)]),
-        pixel=np.concatenate([np.zeros(0, np.int32), *pixels]),
-        flow=np.concatenate([np.zeros((0, 3), np.float32), *values]),
-    )
+            values = np.concatenate([flow.column_row, flow.depth[..., None]], axis=-1)
+            self._pixels.append(pixel.astype(np.int32))
+            self._values.append(values.reshape(-1, 3)[pixel].astype(np.float32))
+
+    def ended(self) -> MovingFlows:
+        """All that was added."""
+        return MovingFlows(
+            shape=self._shape,
+            begin=np.cumsum([len(pixel) for pixel in self._pixels]),
+            pixel=np.concatenate(self._pixels),
+            flow=np.concatenate(self._values),
+        )

@@ -1,19 +1,23 @@
 """Algorithm 1 of the paper: from a recording to motions."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Float32
 
 from algorithm import clustering
+from algorithm.at_hand import AtHand
 from algorithm.bottom_up import Reach, completed_bottom_up
+from algorithm.chaining import chained
 from algorithm.continued import common_fates, continued
 from algorithm.corrections import check_corrections, corrected
 from algorithm.followed import Followed
 from algorithm.following import Tolerances, followed
 from algorithm.given import NOTHING_GIVEN, Given, Linker, Segments
 from algorithm.matching import Pairs, matched_pixels
+from algorithm.observations import Observations, sorted_trajectories
 from algorithm.patches import patches
 from algorithm.result import Keep, Solution, made_now, motions_of
 from algorithm.scene_flow import FlowsBetween, Footage, ThereAndBack, flows_between
@@ -21,7 +25,7 @@ from algorithm.settings import Settings
 from algorithm.spacing import mean_point_spacing
 from algorithm.static import background
 from algorithm.stopwatch import Stopwatch
-from algorithm.trajectories import Trajectories, chained, lasting
+from algorithm.trajectories import Trajectories, lasting
 from recording.corrections import Corrections
 from recording.motions import Making, Motions
 from recording.progress import tracked
@@ -77,10 +81,12 @@ def followed_points(
     return with_patches(trajectories, footage, settings, spacing_m, watch)
 
 
-def footage_of(recording: Recording, settings: Settings) -> Footage:
-    """The frames as the solver sees them."""
-    sensed = [frame.depth for frame in recording.frames]
-    moving = moving_depths(sensed, settings) if settings.remove_static else sensed
+def footage_of(recording: Recording, settings: Settings, room: int | None = None) -> Footage:
+    """The frames as the solver sees them; with `room`, so many stay in memory, and others are read when needed."""
+    frames = recording.frames
+    at_hand = len(frames) if room is None else room
+    sensed = AtHand(lambda number: frames[number].depth, len(frames), room=at_hand)
+    moving = moving_depths(sensed, settings, at_hand) if settings.remove_static else sensed
     return Footage(moving=moving, sensed=sensed, camera=recording.camera, fps=recording.fps)
 
 
@@ -100,10 +106,14 @@ def with_patches(
     )
 
 
-def moving_depths(depths: Depths, settings: Settings) -> list[Float32[np.ndarray, "row column"]]:
-    """The depths without what stands still."""
+def moving_depths(depths: Depths, settings: Settings, room: int | None = None) -> AtHand:
+    """The depths without what stands still, each made when it is asked for; all of them, or `room`, stay in memory."""
     still = background(depths, tolerance_m=settings.static_tolerance_m)
-    return [np.where(still.moving(depth), depth, np.float32(np.nan)) for depth in depths]
+
+    def moving(number: int) -> Float32[np.ndarray, "row column"]:
+        return np.where(still.moving(depths[number]), depths[number], np.float32(np.nan))
+
+    return AtHand(moving, len(depths), room=len(depths) if room is None else room)
 
 
 def timed_flows(flows: FlowsBetween, frames: int, watch: Stopwatch) -> Iterator[ThereAndBack]:
@@ -118,38 +128,40 @@ def trajectories_along(
     flows: Iterable[ThereAndBack], footage: Footage, settings: Settings, spacing_m: float, watch: Stopwatch
 ) -> Trajectories:
     """The trajectories that are no noise (steps 3 and 4)."""
-    if settings.chaining == "pixels":
-        matches = matched_frames(flows, footage, settings, spacing_m, watch)
-        with watch.stage("trajectories"):
-            every = chained(footage.moving, matches, camera=footage.camera)
-    else:
-        tolerances = Tolerances(
-            surface_m=settings.similar_depth_m,
-            home_m=settings.eps1 * spacing_m,
-            jolt_m=settings.jolt_m_per_s2 / footage.fps**2,
-        )
-        every = followed(footage.moving, flows, camera=footage.camera, tolerances=tolerances, watch=watch)
+    history = observed_points(flows, footage, settings, spacing_m, watch)
+    keep = partial(lasting, extent_m=settings.eps2, frames=settings.shortest_frames)
     with watch.stage("trajectories"):
-        return lasting(every, extent_m=settings.eps2, frames=settings.shortest_frames)
+        return sorted_trajectories(history, camera=footage.camera, keep=keep)
+
+
+def observed_points(
+    flows: Iterable[ThereAndBack], footage: Footage, settings: Settings, spacing_m: float, watch: Stopwatch
+) -> list[Observations]:
+    """The points that are followed in every frame."""
+    if settings.chaining == "pixels":
+        return chained(footage.moving, matched_frames(flows, footage, settings, spacing_m, watch))
+    tolerances = Tolerances(
+        surface_m=settings.similar_depth_m,
+        home_m=settings.eps1 * spacing_m,
+        jolt_m=settings.jolt_m_per_s2 / footage.fps**2,
+    )
+    return followed(footage.moving, flows, camera=footage.camera, tolerances=tolerances, watch=watch)
 
 
 def matched_frames(
     flows: Iterable[ThereAndBack], footage: Footage, settings: Settings, spacing_m: float, watch: Stopwatch
-) -> list[Pairs]:
+) -> Iterator[Pairs]:
     """The matches of every pair of consecutive frames (step 3)."""
-    matches = []
     for pair, both in zip(pairwise(footage.moving), flows, strict=True):
         with watch.stage("match"):
-            matches.append(
-                matched_pixels(
-                    both,
-                    pair,
-                    camera=footage.camera,
-                    tolerance_m=settings.eps1 * spacing_m,
-                    similar_depth_m=settings.similar_depth_m,
-                )
+            pairs = matched_pixels(
+                both,
+                pair,
+                camera=footage.camera,
+                tolerance_m=settings.eps1 * spacing_m,
+                similar_depth_m=settings.similar_depth_m,
             )
-    return matches
+        yield pairs
 
 
 def segmented(followed: Followed, settings: Settings, watch: Stopwatch) -> Segments:

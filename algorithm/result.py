@@ -61,32 +61,34 @@ def motions_of(solution: Solution, making: Making) -> Motions:
     for number, found in enumerate(solution.motions):
         motion[found.members] = number
     parts = [np.flatnonzero(found.members)[found.completion.trajectory] for found in solution.motions]
-    completed = np.concatenate([np.zeros(0, int), *parts])
-    count = len(completed)
-    index = np.concatenate([trajectories.trajectory, completed])
-    number = _joined_numbers(solution)[index]
-    frame = _stacked(trajectories.frame, solution, "frame")
-    order = np.lexsort((frame, number))
+    index = np.concatenate([trajectories.trajectory, *parts], dtype=np.int32)
+    trajectory = _joined_numbers(solution)[index].astype(np.int32)
+    frame = _stacked(trajectories.frame, solution, "frame", np.int32)
+    order = np.lexsort((frame, trajectory))
+    index = index[order]
+    count = len(order) - len(trajectories.frame)
+    nowhere = np.full((count, 2), np.nan, np.float32)
     return Motions(
-        frame=frame.astype(np.int32),
-        trajectory=number.astype(np.int32),
-        position=_stacked(trajectories.position, solution, "position").astype(np.float32),
-        column_row=np.concatenate([trajectories.column_row, np.full((count, 2), np.nan)]).astype(np.float32),
-        segment=solution.segments[index].astype(np.int32),
-        motion=motion[index].astype(np.int32),
-        source=_stacked(np.full(len(trajectories.frame), OBSERVED), solution, "source").astype(np.uint8),
-        confidence=_stacked(np.ones(len(trajectories.frame)), solution, "confidence").astype(np.float32),
+        frame=frame[order],
+        trajectory=trajectory[order],
+        position=_stacked(trajectories.position, solution, "position", np.float32)[order],
+        column_row=np.concatenate([trajectories.column_row, nowhere], dtype=np.float32)[order],
+        segment=solution.segments.astype(np.int32)[index],
+        motion=motion.astype(np.int32)[index],
+        source=_stacked(np.full(len(trajectories.frame), OBSERVED, np.uint8), solution, "source", np.uint8)[order],
+        confidence=_stacked(np.ones(len(trajectories.frame), np.float32), solution, "confidence", np.float32)[order],
         representatives=tuple(_representative(number, found) for number, found in enumerate(solution.motions)),
         links=solution.links,
         alternatives=solution.alternatives,
         events=solution.events,
         making=making,
-    ).rows(order)
+    )
 
 
-def _stacked(observed: np.ndarray, solution: Solution, name: str) -> np.ndarray:
+def _stacked(observed: np.ndarray, solution: Solution, name: str, kind: type[np.generic]) -> np.ndarray:
     """A column of the observed rows, followed by that of the completed ones."""
-    return np.concatenate([observed, *(getattr(motion.completion, name) for motion in solution.motions)])
+    parts = [getattr(motion.completion, name) for motion in solution.motions]
+    return np.concatenate([observed, *parts], dtype=kind, casting="unsafe")
 
 
 def _joined_numbers(solution: Solution) -> Int[np.ndarray, "trajectory"]:

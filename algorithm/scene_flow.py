@@ -104,7 +104,7 @@ def _at_once(flow: Callable[[int, int], SceneFlow]) -> ThereAndBack:
 
 def image_of(footage: Footage, settings: Settings, kind: ImageName) -> Callable[[int], Image]:
     """The image of a frame that flow can follow (step 0): depth as grey or brightness, or the lit surface."""
-    within = depth_range(footage.moving)
+    within = depth_range(footage.moving) if kind in ("grey", "nearness") else (0.0, 1.0)
 
     def image(number: int) -> Image:
         moving = footage.moving[number]

@@ -18,7 +18,7 @@ def mean_point_spacing(depths: Sequence[Float32[np.ndarray, "row column"]], *, c
     """
     chosen = np.unique(np.linspace(0, len(depths) - 1, _FRAMES).round().astype(int))
     nearest = []
-    for number in chosen:
+    for number in chosen.tolist():
         points = camera.world_points(depths[number])
         points = points[np.isfinite(depths[number])]
         if len(points) > 1:

@@ -7,7 +7,6 @@ that it was made of: the stage before's key (of the first: the recording's diges
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from itertools import chain
 from typing import Literal, get_args
 
 import numpy as np
@@ -32,11 +31,13 @@ FIRST_FIELD: Mapping[Stage, str] = {
 What stands before is a mere name.
 """
 MODULES: Mapping[Stage, tuple[str, ...]] = {
-    "flow": ("algorithm.moving_flows", "algorithm.scene_flow", "algorithm.static"),
+    "flow": ("algorithm.at_hand", "algorithm.moving_flows", "algorithm.scene_flow", "algorithm.static"),
     "trajectories": (
+        "algorithm.chaining",
         "algorithm.followed",
         "algorithm.following",
         "algorithm.matching",
+        "algorithm.observations",
         "algorithm.patches",
         "algorithm.spacing",
         "algorithm.trajectories",
@@ -45,7 +46,13 @@ MODULES: Mapping[Stage, tuple[str, ...]] = {
     "motions": ("algorithm.bottom_up", "algorithm.continued", "algorithm.corrections", "algorithm.result"),
 }
 """What each stage is made by: with all that these import, and the text of `_TOGETHER`, its code."""
-_TOGETHER = ("algorithm.kept_stages", "algorithm.pipeline", "algorithm.staged", "algorithm.stages")
+_TOGETHER = (
+    "algorithm.flow_parts",
+    "algorithm.kept_stages",
+    "algorithm.pipeline",
+    "algorithm.staged",
+    "algorithm.stages",
+)
 _TOLD = ("algorithm.settings",)
 """Its values stand in the keys; its text does not matter."""
 _SHOWN = ("recording.drawing", "recording.markup", "recording.palette")
@@ -54,7 +61,7 @@ _SHOWN = ("recording.drawing", "recording.markup", "recording.palette")
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Flowing:
-    """What the first stage makes."""
+    """What the first stage makes of some consecutive frames."""
 
     flows: MovingFlows
     seconds: Mapping[str, float]
@@ -127,8 +134,3 @@ def keys_of(recording_digest: str, settings: Settings) -> dict[Stage, str]:
         }
         keys[stage] = before = key_of(stage, document)
     return keys
-
-
-def total_seconds(*parts: Mapping[str, float]) -> dict[str, float]:
-    """Seconds by step, of several stages together."""
-    return {name: sum(part.get(name, 0.0) for part in parts) for name in dict.fromkeys(chain(*parts))}

@@ -1,11 +1,13 @@
 """What stands still is recognised over time and left out: floor, walls, trees."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import cv2
 import numpy as np
 from jaxtyping import Bool, Float32, Int
+
+from algorithm.at_hand import AtHand
 
 _FRAMES_FOR_MEDIAN = 61
 _WOBBLE_M = 0.15
@@ -69,7 +71,8 @@ def background(depths: Sequence[Float32[np.ndarray, "row column"]], *, tolerance
     """
     same = np.full(depths[0].shape, tolerance_m, np.float32)
     rough = Background(depth=usual_depth(depths), tolerance_m=same)
-    level = [depth - np.float32(rough.wobble(depth)) for depth in depths]
+    offsets = [np.float32(rough.wobble(depth)) for depth in depths]
+    level = AtHand(lambda number: depths[number] - offsets[number], len(depths))
     usual = usual_depth(level)
     tolerance = np.clip(_SPREADS * noise_of_pixels(level, usual), tolerance_m, max(_WIDEST_M, tolerance_m))
     still = _stands_still(level, Background(depth=usual, tolerance_m=tolerance))
@@ -80,36 +83,62 @@ def _stands_still(
     depths: Sequence[Float32[np.ndarray, "row column"]], usual: Background
 ) -> Bool[np.ndarray, "row column"]:
     """The pixels whose usual depth belongs to something that stands still."""
-    seen = np.stack([np.isfinite(depth) for depth in depths])
-    agrees = seen & ~np.stack([usual.moving(depth) for depth in depths])
-    nearer = np.stack([depth < usual.depth - usual.tolerance_m for depth in depths])  # Nothing is not nearer.
-    visible = agrees | ~nearer
-    times = agrees.sum(axis=0)
-    often = (times >= seen.sum(axis=0) / 2) & (times >= len(depths) * _LEAST_PRESENCE) & (times >= 2)
-    lasting = _time_from_first_to_last(agrees) >= len(depths) / 2
-    stays = times >= _OPEN_SHARE * visible.sum(axis=0)
-    return often & lasting & (stays | _flickers(agrees, visible))
+    presence = _presence(depths, usual)
+    times = presence.times
+    often = (times >= presence.seen / 2) & (times >= len(depths) * _LEAST_PRESENCE) & (times >= 2)
+    lasting = presence.last - presence.first + 1 >= len(depths) / 2
+    stays = times >= _OPEN_SHARE * presence.visible
+    return often & lasting & (stays | _flickers(presence))
 
 
-def _flickers(
-    agrees: Bool[np.ndarray, "frame row column"], visible: Bool[np.ndarray, "frame row column"]
-) -> Bool[np.ndarray, "row column"]:
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Presence:
+    """In how many frames each pixel shows what."""
+
+    seen: Int[np.ndarray, "row column"]
+    """A return."""
+    times: Int[np.ndarray, "row column"]
+    """Its usual depth."""
+    visible: Int[np.ndarray, "row column"]
+    """Its usual depth, or nothing that is nearer."""
+    pairs: Int[np.ndarray, "row column"]
+    """So also in the frame before."""
+    changes: Int[np.ndarray, "row column"]
+    """And of these two in one alone its usual depth."""
+    first: Int[np.ndarray, "row column"]
+    """The first frame with its usual depth; 0 without any."""
+    last: Int[np.ndarray, "row column"]
+    """The last one."""
+
+
+def _presence(depths: Sequence[Float32[np.ndarray, "row column"]], usual: Background) -> _Presence:
+    counts = {field.name: np.zeros(usual.depth.shape, np.int32) for field in fields(_Presence)}
+    agreed = was_visible = np.zeros(usual.depth.shape, bool)
+    for number, depth in enumerate(depths):
+        seen = np.isfinite(depth)
+        agrees = seen & ~usual.moving(depth)
+        visible = agrees | ~(depth < usual.depth - usual.tolerance_m)  # Nothing is not nearer.
+        pairs = visible & was_visible
+        counts["first"][agrees & (counts["times"] == 0)] = number
+        counts["last"][agrees] = number
+        now = {"seen": seen, "times": agrees, "visible": visible, "pairs": pairs, "changes": pairs & (agrees != agreed)}
+        for name, where in now.items():
+            counts[name] += where
+        agreed, was_visible = agrees, visible
+    return _Presence(**counts)
+
+
+def _flickers(presence: _Presence) -> Bool[np.ndarray, "row column"]:
     """Where what is seen in some of the frames in which it might be changes from frame to frame as if at random.
 
     At random it changes in 2 p (1 - p) of the pairs of consecutive frames, where p is the share in which it is seen.
     Changes are counted over 5x5 pixels, for in a second one pixel says too little.
     """
-    share = agrees.sum(axis=0) / np.maximum(visible.sum(axis=0), 1)
-    pairs = visible[1:] & visible[:-1]
-    changes = ((agrees[1:] != agrees[:-1]) & pairs).sum(axis=0, dtype=np.float64)
-    at_random = 2 * share * (1 - share) * pairs.sum(axis=0)
+    share = presence.times / np.maximum(presence.visible, 1)
+    at_random = 2 * share * (1 - share) * presence.pairs
+    changes = presence.changes.astype(np.float64)
     around, around_at_random = (cv2.boxFilter(each, -1, _AROUND_PX) for each in (changes, at_random))
     return np.asarray(around >= _FLICKER * around_at_random)
-
-
-def _time_from_first_to_last(agrees: Bool[np.ndarray, "frame row column"]) -> Int[np.ndarray, "row column"]:
-    """The frames from the first to the last in which a pixel agrees; all of them where none does."""
-    return len(agrees) - np.argmax(agrees, axis=0) - np.argmax(agrees[::-1], axis=0)
 
 
 def usual_depth(depths: Sequence[Float32[np.ndarray, "row column"]]) -> Float32[np.ndarray, "row column"]:

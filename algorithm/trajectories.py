@@ -1,14 +1,10 @@
-"""Step 4: matches chained into trajectories (paper, section 4, Trajectory computation)."""
+"""Points followed over time, and which of them are no noise (paper, section 4, Trajectory computation)."""
 
-from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from jaxtyping import Bool, Float, Float32, Int
-
-from algorithm.matching import Pairs
-from recording.camera import Camera, pixel_grid
+from jaxtyping import Bool, Float, Int
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -61,32 +57,6 @@ class Trajectories:
         )
 
 
-def chained(
-    depths: Sequence[Float32[np.ndarray, "row column"]], matches: Iterable[Pairs], *, camera: Camera
-) -> Trajectories:
-    """Every point of every frame, on the trajectory that its matches make.
-
-    `matches` are those of consecutive frames, one item less than frames. A point without a match before
-    it begins a trajectory; one without a match after it ends it.
-    """
-    number = np.full(depths[0].size, -1)
-    frames, pixels, numbers = [], [], []
-    begun = 0
-    for frame, (depth, pairs) in enumerate(zip(depths, _after_nothing(matches), strict=True)):
-        source, goal = pairs
-        carried = np.full(depth.size, -1)
-        carried[goal] = number[source]
-        fresh = np.isfinite(depth).ravel() & (carried < 0)
-        carried[fresh] = begun + np.arange(fresh.sum())
-        begun += int(fresh.sum())
-        number = carried
-        pixel = np.flatnonzero(number >= 0)
-        frames.append(np.full(len(pixel), frame))
-        pixels.append(pixel)
-        numbers.append(number[pixel])
-    return _sorted(depths, (np.concatenate(numbers), np.concatenate(frames), np.concatenate(pixels)), camera)
-
-
 def lasting(trajectories: Trajectories, *, extent_m: float, frames: int) -> Trajectories:
     """The trajectories that are no noise: `frames` long at least, and of an extent above epsilon 2.
 
@@ -100,26 +70,3 @@ def lasting(trajectories: Trajectories, *, extent_m: float, frames: int) -> Traj
     high = np.maximum.reduceat(trajectories.position, starts, axis=0)
     extent = np.linalg.norm(high - low, axis=1)
     return trajectories.chosen((extent >= extent_m) & (trajectories.length >= frames))
-
-
-def _after_nothing(matches: Iterable[Pairs]) -> Iterable[Pairs]:
-    """The matches into each frame; nothing leads into the first."""
-    nothing = np.zeros(0, int)
-    yield nothing, nothing
-    yield from matches
-
-
-def _sorted(
-    depths: Sequence[np.ndarray], rows: tuple[np.ndarray, np.ndarray, np.ndarray], camera: Camera
-) -> Trajectories:
-    number, frame, pixel = rows
-    order = np.lexsort((frame, number))
-    number, frame, pixel = number[order], frame[order], pixel[order]
-    column_row = pixel_grid(camera.height, camera.width).reshape(-1, 2)[pixel]
-    depth = np.stack(depths).reshape(len(depths), -1)[frame, pixel].astype(np.float64)
-    return Trajectories(
-        trajectory=number,
-        frame=frame,
-        position=camera.world_from_pixel(column_row, depth),
-        column_row=column_row,
-    )

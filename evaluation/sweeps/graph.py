@@ -76,7 +76,7 @@ def _stages(trial: Trial, key: str) -> Iterator[tuple[str, Task]]:
     yield seen, Task(seen, _visibility, trial)
     yield segments, Task(segments, _grouped, trial, TaskRef(trajectories))
     if _holds(trial.cache, trajectories):
-        yield trajectories, Task(trajectories, _observed, trial, None)
+        yield trajectories, Task(trajectories, _observed, trial, ())
     else:
         yield trajectories, Task(trajectories, _observed, trial, TaskRef(flow))
         yield flow, Task(flow, _flowing, trial)
@@ -86,11 +86,11 @@ def _holds(cache: Cache | None, key: str) -> bool:
     return cache is not None and cache.holds(key)
 
 
-def _flowing(trial: Trial) -> Flowing:
+def _flowing(trial: Trial) -> tuple[Flowing, ...]:
     return trial.course().flowing()
 
 
-def _observed(trial: Trial, flowing: Flowing | None) -> Observed:
+def _observed(trial: Trial, flowing: tuple[Flowing, ...]) -> Observed:
     return trial.course().observed(flowing)
 
 

@@ -8,6 +8,7 @@ from worlds import box, depths_of, plane, small_camera, sphere
 
 from algorithm.following import Tolerances, followed
 from algorithm.lifting import SceneFlow
+from algorithm.observations import sorted_trajectories
 from algorithm.stopwatch import Stopwatch
 from algorithm.trajectories import Trajectories
 
@@ -29,7 +30,8 @@ def there_and_back(
 def follow(
     depths: list[np.ndarray], flows: list[tuple[SceneFlow, SceneFlow]], tolerances: Tolerances = WIDE
 ) -> Trajectories:
-    return followed(depths, flows, camera=CAMERA, tolerances=tolerances, watch=Stopwatch())
+    history = followed(depths, flows, camera=CAMERA, tolerances=tolerances, watch=Stopwatch())
+    return sorted_trajectories(history, camera=CAMERA)
 
 
 def patch(column: int, frames: int, step: int = 0, depth: float = 3.0) -> list[np.ndarray]:

@@ -10,6 +10,7 @@ import pytest
 from worlds import recorded, sphere
 
 from algorithm import pipeline, staged
+from algorithm.flow_parts import FlowParts
 from algorithm.given import Given
 from algorithm.settings import Settings, preset_settings
 from algorithm.staged import Course, solve
@@ -36,16 +37,17 @@ def calls() -> Iterator[dict[str, int]]:
     """How often each stage was made."""
     made = dict.fromkeys(("flowing", "observed", "grouped"), 0)
 
-    def counting(name: str) -> object:
-        original = getattr(Course, f"_made_{name}")
+    def counting(name: str, owner: type, method: str) -> object:
+        original = getattr(owner, method)
 
         def counted(*arguments: object) -> object:
             made[name] += 1
             return original(*arguments)
 
-        return patch.object(Course, f"_made_{name}", counted)
+        return patch.object(owner, method, counted)
 
-    with counting("flowing"), counting("observed"), counting("grouped"):
+    flowing = counting("flowing", FlowParts, "_made")
+    with flowing, counting("observed", Course, "_made_observed"), counting("grouped", Course, "_made_grouped"):
         yield made
 
 

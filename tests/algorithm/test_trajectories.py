@@ -9,7 +9,10 @@ from hypothesis import strategies as st
 from made import line, trajectories_of
 from worlds import small_camera
 
-from algorithm.trajectories import Trajectories, chained, lasting
+from algorithm.chaining import chained
+from algorithm.matching import Pairs
+from algorithm.observations import sorted_trajectories
+from algorithm.trajectories import Trajectories, lasting
 
 CAMERA = small_camera(3, 2)
 NONE = (np.zeros(0, int), np.zeros(0, int))
@@ -24,8 +27,12 @@ def pairs(*matches: tuple[int, int]) -> tuple[np.ndarray, np.ndarray]:
     return source, goal
 
 
+def trajectories_along(depths: list[np.ndarray], matches: list[Pairs]) -> Trajectories:
+    return sorted_trajectories(chained(depths, matches), camera=CAMERA)
+
+
 def test_matches_are_chained_across_frames() -> None:
-    found = chained([full(2.0), full(2.5), full(3.0)], [pairs((0, 1)), pairs((1, 5), (3, 3))], camera=CAMERA)
+    found = trajectories_along([full(2.0), full(2.5), full(3.0)], [pairs((0, 1)), pairs((1, 5), (3, 3))])
     assert found.count == 6 + 5 + 4
     np.testing.assert_array_equal(found.frame[found.trajectory == 0], [0, 1, 2])
     np.testing.assert_array_equal(found.column_row[found.trajectory == 0], [[0.5, 0.5], [1.5, 0.5], [2.5, 1.5]])
@@ -34,14 +41,14 @@ def test_matches_are_chained_across_frames() -> None:
 
 
 def test_places_are_those_of_the_camera() -> None:
-    found = chained([full()], [], camera=CAMERA)
+    found = trajectories_along([full()], [])
     np.testing.assert_allclose(found.position, CAMERA.world_points(full()).reshape(-1, 3))
 
 
 def test_a_frame_without_returns_splits_everything() -> None:
     empty = np.full((2, 3), np.nan, np.float32)
     everyone = pairs(*((pixel, pixel) for pixel in range(6)))
-    found = chained([full(), full(), empty, full()], [everyone, NONE, NONE], camera=CAMERA)
+    found = trajectories_along([full(), full(), empty, full()], [everyone, NONE, NONE])
     assert found.count == 12
     assert 2 not in found.frame
     np.testing.assert_array_equal(found.first_frame, [0] * 6 + [3] * 6)
@@ -50,7 +57,7 @@ def test_a_frame_without_returns_splits_everything() -> None:
 
 def test_without_any_return_there_is_no_trajectory() -> None:
     empty = np.full((2, 3), np.nan, np.float32)
-    found = chained([empty, empty], [NONE], camera=CAMERA)
+    found = trajectories_along([empty, empty], [NONE])
     assert found.count == 0
     assert len(found.first_row) == len(found.length) == 0
     assert lasting(found, extent_m=0.0, frames=1).count == 0
@@ -66,7 +73,7 @@ def test_every_return_is_on_exactly_one_trajectory(seed: int, frames: int) -> No
         goal = generator.permutation(np.flatnonzero(np.isfinite(after)))
         size = generator.integers(0, min(len(source), len(goal)) + 1)
         matches.append((source[:size], goal[:size]))
-    found = chained(depths, matches, camera=CAMERA)
+    found = trajectories_along(depths, matches)
     assert len(found.frame) == sum(int(np.isfinite(depth).sum()) for depth in depths)
     assert found.count == len(found.frame) - sum(len(source) for source, _ in matches)
     assert_well_formed(found)

@@ -8,6 +8,7 @@ from unittest.mock import patch
 import dask
 import pytest
 
+from algorithm.flow_parts import FlowParts
 from algorithm.settings import Settings
 from algorithm.staged import Course, solve
 from evaluation.scores import evaluate
@@ -37,16 +38,16 @@ def calls() -> Iterator[Counter[str]]:
     """How often each stage was made."""
     made: Counter[str] = Counter()
 
-    def counting(name: str) -> object:
-        original = getattr(Course, name)
+    def counting(name: str, owner: type = Course) -> object:
+        original = getattr(owner, name)
 
         def counted(*arguments: object) -> object:
             made[name] += 1
             return original(*arguments)
 
-        return patch.object(Course, name, counted)
+        return patch.object(owner, name, counted)
 
-    with counting("_made_flowing"), counting("_made_observed"), counting("_made_grouped"), counting("motions"):
+    with counting("_made", FlowParts), counting("_made_observed"), counting("_made_grouped"), counting("motions"):
         yield made
 
 
@@ -69,7 +70,7 @@ def computed(trials: list[Trial]) -> list[dict[str, object]]:
 
 def test_sixteen_points_with_two_flow_settings_run_the_flow_twice(subject: Subject, calls: Counter[str]) -> None:
     scores = computed(sixteen(subject))
-    assert calls == {"_made_flowing": 2, "_made_observed": 4, "_made_grouped": 8, "motions": 16}
+    assert calls == {"_made": 2, "_made_observed": 4, "_made_grouped": 8, "motions": 16}
     assert len(scores) == 16
 
 
@@ -79,7 +80,7 @@ def test_the_same_again_runs_nothing_from_the_cache(subject: Subject, calls: Cou
     before = calls.copy()
     assert computed(sixteen(subject, cache)) == first
     assert calls == before
-    assert calls["_made_flowing"] == 2
+    assert calls["_made"] == 2
 
 
 def test_solve_and_a_sweep_share_their_cache(subject: Subject, calls: Counter[str], tmp_path: Path) -> None:
@@ -87,7 +88,7 @@ def test_solve_and_a_sweep_share_their_cache(subject: Subject, calls: Counter[st
     settings = Settings(flow="dis")
     solve(load_recording(subject.place), settings, cache=cache)
     computed([trial_of(subject, settings, cache)])
-    assert calls == {"_made_flowing": 1, "_made_observed": 1, "_made_grouped": 1, "motions": 2}
+    assert calls == {"_made": 1, "_made_observed": 1, "_made_grouped": 1, "motions": 2}
 
 
 def test_the_scores_are_those_of_solve_and_evaluate(subject: Subject) -> None:

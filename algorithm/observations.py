@@ -1,0 +1,75 @@
+"""What was followed, frame by frame and in little room, until all of it is sorted into trajectories."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, fields
+
+import numpy as np
+from jaxtyping import Bool, Float32, Int32, Int64
+
+from algorithm.trajectories import Trajectories
+from recording.camera import Camera
+
+_ROWS_AT_ONCE = 2_000_000
+"""A row takes 16 bytes here, 56 as part of a trajectory, and some hundred while it is sorted."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Observations:
+    """The points that are followed in one frame."""
+
+    number: Int32[np.ndarray, "point"]
+    """Of their trajectories, counted from 0 over the recording."""
+    column_row: Float32[np.ndarray, "point 2"]
+    """Picture position, pixels."""
+    depth: Float32[np.ndarray, "point"]
+    """Metres."""
+
+    def chosen(self, which: Bool[np.ndarray, "point"]) -> "Observations":
+        """Some of the points."""
+        return Observations(number=self.number[which], column_row=self.column_row[which], depth=self.depth[which])
+
+
+def sorted_trajectories(
+    history: Sequence[Observations],
+    *,
+    camera: Camera,
+    keep: Callable[[Trajectories], Trajectories] = lambda every: every,
+) -> Trajectories:
+    """The trajectories of what was observed in every frame, those of them that `keep` keeps of some.
+
+    They are sorted some at a time, and what is not kept goes before the next are: so noise never takes much room.
+    """
+    parts = [keep(_sorted(part, camera)) for part in _parts(history)]
+    begin = np.cumsum([0, *(part.count for part in parts[:-1])])
+    names = [field.name for field in fields(Trajectories) if field.name != "trajectory"]
+    columns = {name: np.concatenate([getattr(part, name) for part in parts]) for name in names}
+    number = np.concatenate([part.trajectory + first for part, first in zip(parts, begin, strict=True)])
+    return Trajectories(trajectory=number, **columns)
+
+
+def _parts(history: Sequence[Observations]) -> Iterator[list[Observations]]:
+    """The history of some trajectories after the other; one part at least."""
+    length = np.bincount(np.concatenate([points.number for points in history]))
+    part = np.cumsum(length) // _ROWS_AT_ONCE
+    for number in range(int(part.max(initial=0)) + 1):
+        yield [points.chosen(part[points.number] == number) for points in history]
+
+
+def _sorted(history: Sequence[Observations], camera: Camera) -> Trajectories:
+    """The points by trajectory, then frame; trajectories numbered anew from 0, in the same order."""
+    number = np.concatenate([points.number for points in history])
+    frame = np.repeat(np.arange(len(history)), [len(points.number) for points in history])
+    order = np.argsort(number, kind="stable")  # They are in order of time.
+    column_row = np.concatenate([points.column_row for points in history])[order].astype(np.float64)
+    depth = np.concatenate([points.depth for points in history])[order].astype(np.float64)
+    return Trajectories(
+        trajectory=_counted(number[order]),
+        frame=frame[order],
+        position=camera.world_from_pixel(column_row, depth),
+        column_row=column_row,
+    )
+
+
+def _counted(number: Int32[np.ndarray, "row"]) -> Int64[np.ndarray, "row"]:
+    """Sorted numbers, without gaps from 0."""
+    return np.cumsum(np.diff(number, prepend=number[:1]) > 0)

@@ -1,0 +1,104 @@
+"""Recordings that do not fit into memory: solved alike, in parts, from where a run was interrupted."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from worlds import recorded, sphere
+
+from algorithm import flow_parts, observations, staged
+from algorithm.at_hand import AtHand
+from algorithm.estimate import estimated, room_for
+from algorithm.flow_parts import FlowParts
+from algorithm.scene_flow import ThereAndBack
+from algorithm.settings import Settings, preset_settings
+from algorithm.staged import solve
+from recording.cache import Cache
+from recording.motions import COLUMNS, Motions
+from recording.recording import Recording
+
+
+@pytest.fixture(scope="module")
+def recording() -> Recording:
+    """A ball passes behind another."""
+    near = sphere(lambda frame: (0.1, 0, 1.5), 0.25)
+    far = sphere(lambda frame: (-0.9 + 0.12 * frame, 0, 2.5), 0.3)
+    return recorded([near, far], frames=16, moving=[False, True])
+
+
+@pytest.fixture
+def in_small_parts(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(flow_parts, "_PAIRS", 4)
+    monkeypatch.setattr(observations, "_ROWS_AT_ONCE", 300)
+
+
+def assert_same(one: Motions, other: Motions) -> None:
+    for name in COLUMNS:
+        np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
+
+
+@pytest.mark.parametrize("preset", ["default", "paper"])
+def test_with_hardly_any_memory_the_motions_are_the_same(
+    recording: Recording, preset: str, request: pytest.FixtureRequest
+) -> None:
+    settings = preset_settings(preset)
+    plain = solve(recording, settings)
+    request.getfixturevalue("in_small_parts")
+    assert len(plain) > 100
+    assert room_for(recording.metadata, 1) < recording.metadata.frames
+    assert_same(solve(recording, settings, memory_bytes=1), plain)
+
+
+@pytest.mark.usefixtures("in_small_parts")
+def test_an_interrupted_run_goes_on_where_it_was(
+    recording: Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cache, made = Cache(folder=tmp_path), []
+    original = FlowParts._made
+
+    def interrupted(self: FlowParts, pairs: range, key: str) -> Iterator[ThereAndBack]:
+        if pairs.start == 8 and len(made) == 2:
+            raise KeyboardInterrupt
+        made.append(pairs.start)
+        return original(self, pairs, key)
+
+    monkeypatch.setattr(FlowParts, "_made", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        solve(recording, cache=cache)
+    made.append(-1)
+    resumed = solve(recording, cache=cache)
+    assert made == [0, 4, -1, 8, 12]
+    assert_same(resumed, solve(recording))
+    assert staged.Course(recording=recording, digest=recording.digest(), settings=Settings(), cache=cache).observed()
+
+
+def test_no_more_images_stay_than_there_is_room_for() -> None:
+    made: list[int] = []
+
+    def make(number: int) -> np.ndarray:
+        made.append(number)
+        return np.full((2, 3), number, np.float32)
+
+    images = AtHand(make, 5, room=2)
+    assert [int(image[0, 0]) for image in images] == [0, 1, 2, 3, 4]
+    assert (images[-1] == 4).all()
+    assert [int(image[0, 0]) for image in images[3:]] == [3, 4]
+    assert made == [0, 1, 2, 3, 4]
+    assert (images[0] == 0).all()
+    assert made == [0, 1, 2, 3, 4, 0]
+    with pytest.raises(IndexError):
+        _ = images[5]
+
+
+def test_an_estimate_counts_what_moves(recording: Recording) -> None:
+    expected = estimated(recording, memory_bytes=10**9)
+    moving = solve(recording).observed.sum()
+    assert 0.5 * moving < expected.points < 2 * moving
+    assert 0 < expected.seconds < 600
+    assert 4e8 <= expected.memory_bytes < 5e8
+
+
+def test_an_estimate_of_a_single_frame() -> None:
+    one = recorded([sphere(lambda _: (0.1, 0, 1.5), 0.25)], frames=1, moving=[False])
+    assert estimated(one, memory_bytes=10**9).seconds >= 0
