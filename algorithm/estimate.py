@@ -22,7 +22,10 @@ _SHARE_FOR_FRAMES = 0.25
 _FEWEST_AT_HAND = 8
 _PASSES = 6
 """How often a depth image is read that does not stay in memory."""
-_BASE_BYTES, _BYTES_A_POINT = 4e8, 160.0
+_BASE_BYTES = 5e8
+_BYTES_FOLLOWED, _BYTES_KEPT = 25.0, 300.0
+"""Of each moving point in each frame: while it is followed, and if it is kept."""
+_FARTHEST_APART_PX = 10
 _SECONDS_A_POINT = 8e-6
 """Of all steps after the flow, on one core."""
 
@@ -35,8 +38,23 @@ class Estimate:
     """Moving points in all frames together."""
     seconds: float
     """On this machine, as busy as it is now, if no stage is in the cache."""
-    memory_bytes: float
-    """The largest that it will need at a time."""
+    images_bytes: float
+    """Of the depth images that stay in memory."""
+    points_apart_px: int
+    """As the settings have it."""
+
+    @property
+    def memory_bytes(self) -> float:
+        """The largest that it will need at a time."""
+        return self._memory_bytes(self.points_apart_px)
+
+    def points_apart_within(self, memory_bytes: int) -> int | None:
+        """How far apart points must begin, pixels, so that so much memory is enough; None where nothing helps."""
+        every = range(self.points_apart_px, _FARTHEST_APART_PX + 1)
+        return next((apart for apart in every if self._memory_bytes(apart) <= memory_bytes), None)
+
+    def _memory_bytes(self, apart_px: int) -> float:
+        return _BASE_BYTES + self.images_bytes + self.points * (_BYTES_FOLLOWED + _BYTES_KEPT / apart_px**2)
 
 
 def is_long(metadata: Metadata) -> bool:
@@ -70,7 +88,8 @@ def estimated(recording: Recording, settings: Settings | None = None, *, memory_
     return Estimate(
         points=points,
         seconds=about.frames * (flow_seconds + passes * read_seconds) + _SECONDS_A_POINT * points,
-        memory_bytes=_BASE_BYTES + 2 * 4.0 * room * about.width * about.height + _BYTES_A_POINT * points,
+        images_bytes=2 * 4.0 * room * about.width * about.height,
+        points_apart_px=settings.points_apart_px,
     )
 
 

@@ -11,12 +11,10 @@ from scipy.sparse.csgraph import breadth_first_order
 
 from algorithm.continuation import Candidates
 from algorithm.guidance import Guidance, Pairs, joined
-from algorithm.linking import Links, Standing, gains, linked
+from algorithm.linking import FORCED, Links, Standing, gains, linked
 from algorithm.segment_frames import SegmentFrames
 from recording.errors import InputError
 
-_FORCED = -1e5
-"""The price of a link that must be made: no other can outweigh it."""
 _DEAR = 50.0
 """The price of a link that is no candidate, where one of several ways is chosen."""
 _ANY_RESTLESSNESS = 1.0
@@ -135,7 +133,7 @@ def _priced(possible: Candidates, forced: Pairs, barred: set[tuple[int, int]]) -
         possible,
         before=before,
         after=after,
-        price=np.where(is_forced, _FORCED, price),
+        price=np.where(is_forced, FORCED, price),
         restlessness=restlessness,
     )
 

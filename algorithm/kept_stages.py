@@ -1,9 +1,10 @@
 """The results of the stages as files: Arrow tables, exact to the last bit."""
 
 import json
+from dataclasses import fields
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import pyarrow as pa
@@ -22,13 +23,13 @@ from recording.cache import Form
 from recording.recording import Recording
 
 _BELONGINGS = b"unocclude"
+_ROWS_AT_ONCE = 1_000_000
 
 
 def _write_flowing(flowing: Flowing, path: Path) -> None:
     flows = flowing.flows
-    column, row, depth = flows.flow.T
     known = {"shape": flows.shape, "begin": flows.begin.tolist(), "seconds": dict(flowing.seconds)}
-    _write({"pixel": flows.pixel, "column": column, "row": row, "depth": depth}, known, path)
+    _write({"pixel": flows.pixel, "flow": flows.flow}, known, path)
 
 
 def _read_flowing(path: Path) -> Flowing:
@@ -37,25 +38,22 @@ def _read_flowing(path: Path) -> Flowing:
         shape=tuple(known["shape"]),
         begin=np.array(known["begin"]),
         pixel=columns["pixel"],
-        flow=np.stack([columns[name] for name in ("column", "row", "depth")], axis=1),
+        flow=columns["flow"],
     )
     return Flowing(flows=flows, seconds=known["seconds"])
 
 
 def _write_observed(observed: Observed, path: Path) -> None:
     followed = observed.followed
-    x, y, z = followed.patches.centre.T
-    patch = {"pixels": followed.patches.pixels, "patch_x": x, "patch_y": y, "patch_z": z}
     known = {"spacing_m": followed.spacing_m, "seconds": dict(observed.seconds)}
-    _write(_columns(followed.trajectories) | patch, known, path)
+    _write(_columns(followed.trajectories) | _columns(followed.patches), known, path)
 
 
 def _read_observed(recording: Recording, path: Path) -> Observed:
     columns, known = _read(path)
-    centre = np.stack([columns[name] for name in ("patch_x", "patch_y", "patch_z")], axis=1)
     followed = Followed(
-        trajectories=_trajectories(columns),
-        patches=Patches(pixels=columns["pixels"], centre=centre),
+        trajectories=_from_columns(Trajectories, columns),
+        patches=_from_columns(Patches, columns),
         spacing_m=known["spacing_m"],
         camera=recording.camera,
         fps=recording.fps,
@@ -98,12 +96,17 @@ def _write_motion(motion: Motion, path: Path) -> None:
     columns |= {axis: completion.position[:, number] for number, axis in enumerate("xyz")}
     columns |= {name: getattr(completion, name) for name in ("trajectory", "frame", "source", "confidence")}
     columns |= {"points": curve.points, "before": completion.joins[0], "after": completion.joins[1]}
-    _write({name: [values] for name, values in columns.items()}, {"first": int(curve.first)}, path)
+    table = pa.table({name: [values] for name, values in columns.items()})
+    feather.write_feather(
+        table.replace_schema_metadata(_told({"first": int(curve.first)})), str(path), compression="zstd"
+    )
 
 
 def _read_motion(members: Bool[np.ndarray, "trajectory"], segments: Int[np.ndarray, "member"], path: Path) -> Motion:
-    lists, known = _read(path)
-    columns = {name: np.array(values[0]) for name, values in lists.items()}
+    table = feather.read_table(str(path), memory_map=False)
+    columns = {
+        name: np.array(table.column(name)[0].values.to_numpy(zero_copy_only=False)) for name in table.column_names
+    }
     curve = np.stack([columns[f"curve_{axis}"] for axis in "xyz"], axis=1)
     completion = Completion(
         position=np.stack([columns[axis] for axis in "xyz"], axis=1),
@@ -112,35 +115,71 @@ def _read_motion(members: Bool[np.ndarray, "trajectory"], segments: Int[np.ndarr
     )
     return Motion(
         segments=tuple(np.unique(segments).tolist()),
-        curve=Curve(first=known["first"], position=curve, points=columns["points"]),
+        curve=Curve(first=_known(table.schema)["first"], position=curve, points=columns["points"]),
         members=members,
         completion=completion,
     )
 
 
-def _columns(trajectories: Trajectories) -> dict[str, np.ndarray]:
-    x, y, z = trajectories.position.T
-    column, row = trajectories.column_row.T
-    own = {"trajectory": trajectories.trajectory, "frame": trajectories.frame}
-    return {**own, "x": x, "y": y, "z": z, "column": column, "row": row}
+Columns = TypeVar("Columns", Trajectories, Patches)
 
 
-def _trajectories(columns: dict[str, np.ndarray]) -> Trajectories:
-    return Trajectories(
-        trajectory=columns["trajectory"],
-        frame=columns["frame"],
-        position=np.stack([columns[name] for name in ("x", "y", "z")], axis=1),
-        column_row=np.stack([columns[name] for name in ("column", "row")], axis=1),
-    )
+def _columns(value: Trajectories | Patches) -> dict[str, np.ndarray]:
+    return {field.name: getattr(value, field.name) for field in fields(value)}
 
 
-def _write(columns: dict[str, Any], known: dict[str, Any], path: Path) -> None:
-    table = pa.table(columns).replace_schema_metadata({_BELONGINGS: json.dumps(known)})
-    feather.write_feather(table, str(path), compression="zstd")
+def _from_columns(kind: type[Columns], columns: dict[str, np.ndarray]) -> Columns:
+    return kind(**{field.name: columns[field.name] for field in fields(kind)})
+
+
+def _write(columns: dict[str, np.ndarray], known: dict[str, Any], path: Path) -> None:
+    """Columns of numbers or of vectors, some rows at a time: they are large, and Arrow copies."""
+    parts = max(1, -(-len(next(iter(columns.values()))) // _ROWS_AT_ONCE))
+    split = {name: np.array_split(values, parts) for name, values in columns.items()}
+    schema = _batch(split, 0).schema.with_metadata(_told(known))
+    with pa.ipc.new_file(str(path), schema, options=pa.ipc.IpcWriteOptions(compression="zstd")) as file:
+        for number in range(parts):
+            file.write_batch(_batch(split, number))
+
+
+def _batch(split: dict[str, list[np.ndarray]], number: int) -> pa.RecordBatch:
+    return pa.record_batch({name: _arrow(values[number]) for name, values in split.items()})
+
+
+def _arrow(values: np.ndarray) -> pa.Array:
+    plain = pa.array(values.ravel())
+    return plain if values.ndim == 1 else pa.FixedSizeListArray.from_arrays(plain, values.shape[1])
 
 
 def _read(path: Path) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
     """Columns that can be written to, as those of a result that was just made."""
-    table = feather.read_table(str(path), memory_map=False)
-    columns = {name: np.array(table.column(name).to_numpy()) for name in table.column_names}
-    return columns, json.loads(table.schema.metadata[_BELONGINGS])
+    with pa.ipc.open_file(str(path)) as file:
+        total = file.count_rows()
+        columns = {field.name: _room(field.type, total) for field in file.schema}
+        filled = 0
+        for number in range(file.num_record_batches):
+            batch = file.get_batch(number)
+            for name, values in columns.items():
+                part = values[filled : filled + len(batch)]
+                part[:] = _plain(batch.column(name)).reshape(part.shape)
+            filled += len(batch)
+        return columns, _known(file.schema)
+
+
+def _room(kind: pa.DataType, rows: int) -> np.ndarray:
+    if pa.types.is_fixed_size_list(kind):
+        return np.empty((rows, kind.list_size), kind.value_type.to_pandas_dtype())
+    return np.empty(rows, kind.to_pandas_dtype())
+
+
+def _plain(column: pa.Array) -> np.ndarray:
+    return (column.flatten() if pa.types.is_fixed_size_list(column.type) else column).to_numpy(zero_copy_only=False)
+
+
+def _told(known: dict[str, Any]) -> dict[bytes, str]:
+    return {_BELONGINGS: json.dumps(known)}
+
+
+def _known(schema: pa.Schema) -> dict[str, Any]:
+    known: dict[str, Any] = json.loads(schema.metadata[_BELONGINGS])
+    return known

@@ -33,6 +33,8 @@ _LONG_SECONDS, _MANY = 0.5, 20.0
 _FEWEST = 3.0
 """Points a frame; with fewer a segment links nothing."""
 _FOREVER = 1e6
+FORCED = -1e5
+"""The price of a link that must be made: no other can outweigh it."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -92,12 +94,13 @@ def gains(possible: Candidates, standing: Standing) -> Float[np.ndarray, "link"]
 def confidences(links: Links) -> Float[np.ndarray, "link"]:
     """The probability that each link is right: the larger its margin, the calmer what it links, the less surprising.
 
-    Of one that was not chosen it is at most a half, and falls with what choosing it would cost.
+    Of one that was not chosen it is at most a half, and falls with what choosing it would cost; one that must be made
+    is certain.
     """
     evidence = _SURE[0] + _SURE[1] * np.log1p(np.maximum(links.margin, 0.0)) - _SURE[2] * np.log(links.restlessness)
     evidence -= _SURE[3] * np.maximum(links.price - _STRANGE, 0.0)
     evidence = np.where(links.chosen, evidence, _RIVAL * np.minimum(links.margin, 0.0))
-    return 1.0 / (1.0 + np.exp(-np.clip(evidence, -50.0, 50.0)))
+    return np.where(links.price <= FORCED, 1.0, 1.0 / (1.0 + np.exp(-np.clip(evidence, -50.0, 50.0))))
 
 
 def standings(rows: SegmentFrames, camera: Camera, settings: Settings, *, frames: int, fps: float) -> Standing:

@@ -1,7 +1,7 @@
 """What was followed, frame by frame and in little room, until all of it is sorted into trajectories."""
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Bool, Float32, Int32, Int64
@@ -9,8 +9,8 @@ from jaxtyping import Bool, Float32, Int32, Int64
 from algorithm.trajectories import Trajectories
 from recording.camera import Camera
 
-_ROWS_AT_ONCE = 2_000_000
-"""A row takes 16 bytes here, 56 as part of a trajectory, and some hundred while it is sorted."""
+_ROWS_AT_ONCE = 1_000_000
+"""A row takes 16 bytes here, 44 as part of a trajectory, and some hundred while it is sorted."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -39,12 +39,22 @@ def sorted_trajectories(
 
     They are sorted some at a time, and what is not kept goes before the next are: so noise never takes much room.
     """
-    parts = [keep(_sorted(part, camera)) for part in _parts(history)]
-    begin = np.cumsum([0, *(part.count for part in parts[:-1])])
-    names = [field.name for field in fields(Trajectories) if field.name != "trajectory"]
-    columns = {name: np.concatenate([getattr(part, name) for part in parts]) for name in names}
-    number = np.concatenate([part.trajectory + first for part, first in zip(parts, begin, strict=True)])
-    return Trajectories(trajectory=number, **columns)
+    most = sum(len(points.number) for points in history)  # Room that is never written to takes no memory.
+    columns: dict[str, np.ndarray] = {
+        "trajectory": np.empty(most, np.int64),
+        "frame": np.empty(most, np.int32),
+        "position": np.empty((most, 3)),
+        "column_row": np.empty((most, 2), np.float32),
+    }
+    rows = count = 0
+    for part in _parts(history):
+        kept = keep(_sorted(part, camera))
+        own = slice(rows, rows + len(kept.frame))
+        for name, column in columns.items():
+            column[own] = getattr(kept, name)
+        columns["trajectory"][own] += count
+        rows, count = own.stop, count + kept.count
+    return Trajectories(**{name: column[:rows] for name, column in columns.items()})
 
 
 def _parts(history: Sequence[Observations]) -> Iterator[list[Observations]]:
@@ -58,14 +68,14 @@ def _parts(history: Sequence[Observations]) -> Iterator[list[Observations]]:
 def _sorted(history: Sequence[Observations], camera: Camera) -> Trajectories:
     """The points by trajectory, then frame; trajectories numbered anew from 0, in the same order."""
     number = np.concatenate([points.number for points in history])
-    frame = np.repeat(np.arange(len(history)), [len(points.number) for points in history])
+    frame = np.repeat(np.arange(len(history), dtype=np.int32), [len(points.number) for points in history])
     order = np.argsort(number, kind="stable")  # They are in order of time.
-    column_row = np.concatenate([points.column_row for points in history])[order].astype(np.float64)
+    column_row = np.concatenate([points.column_row for points in history])[order]
     depth = np.concatenate([points.depth for points in history])[order].astype(np.float64)
     return Trajectories(
         trajectory=_counted(number[order]),
         frame=frame[order],
-        position=camera.world_from_pixel(column_row, depth),
+        position=camera.world_from_pixel(column_row.astype(np.float64), depth),
         column_row=column_row,
     )
 

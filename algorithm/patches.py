@@ -37,7 +37,7 @@ def patches(
     `moving` are the frames' depths, NaN where nothing moves. Pixels without a point within `reach_m` count nowhere.
     """
     pixels = np.zeros(len(trajectories.frame), np.float32)
-    centre = trajectories.position.copy()
+    centre = trajectories.position.astype(np.float32)
     order = np.argsort(trajectories.frame, kind="stable")
     bounds = np.searchsorted(trajectories.frame[order], np.arange(len(moving) + 1))
     grid = pixel_grid(camera.height, camera.width)

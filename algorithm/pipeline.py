@@ -1,7 +1,6 @@
 """Algorithm 1 of the paper: from a recording to motions."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -25,7 +24,7 @@ from algorithm.settings import Settings
 from algorithm.spacing import mean_point_spacing
 from algorithm.static import background
 from algorithm.stopwatch import Stopwatch
-from algorithm.trajectories import Trajectories, lasting
+from algorithm.trajectories import Trajectories, lasting, thinned
 from recording.corrections import Corrections
 from recording.motions import Making, Motions
 from recording.progress import tracked
@@ -129,7 +128,11 @@ def trajectories_along(
 ) -> Trajectories:
     """The trajectories that are no noise (steps 3 and 4)."""
     history = observed_points(flows, footage, settings, spacing_m, watch)
-    keep = partial(lasting, extent_m=settings.eps2, frames=settings.shortest_frames)
+
+    def keep(some: Trajectories) -> Trajectories:
+        fewer = thinned(some, apart_px=settings.points_apart_px)
+        return lasting(fewer, extent_m=settings.eps2, frames=settings.shortest_frames)
+
     with watch.stage("trajectories"):
         return sorted_trajectories(history, camera=footage.camera, keep=keep)
 

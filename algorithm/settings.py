@@ -55,6 +55,8 @@ class Settings(Frozen):
     """Metres: a trajectory of smaller extent is noise (paper: epsilon 2)."""
     shortest_frames: Count = 4
     """Frames: a shorter trajectory is noise."""
+    points_apart_px: Count = 1
+    """Pixels: the points that begin in every so many columns and rows are kept; 2 needs a quarter of the memory."""
 
     patch_radius_m: Positive = 0.25
     """Metres: a moving pixel belongs to the nearest followed point within this distance."""

@@ -8,9 +8,9 @@ import numpy as np
 from jaxtyping import Bool, Float32, Int
 
 from algorithm.at_hand import AtHand
+from recording.over_time import quantile_over_time, spread_numbers, wobble_m
 
 _FRAMES_FOR_MEDIAN = 61
-_WOBBLE_M = 0.15
 _SHARE, _SIGMAS = 0.75, 1.1503
 """So large a share of what is normal lies within so many standard deviations. Of rounded depths the median is 0."""
 _SPREADS = 3.0
@@ -48,9 +48,7 @@ class Background:
         Time-of-flight cameras shift a whole frame by some centimetres. It is the median over the pixels
         that come within 15 cm of the background; 0 where there are none.
         """
-        residual = depth - self.depth
-        near = residual[np.abs(residual) < _WOBBLE_M]
-        return float(np.median(near)) if near.size else 0.0
+        return wobble_m(depth - self.depth)
 
     def moving(self, depth: Float32[np.ndarray, "row column"]) -> Bool[np.ndarray, "row column"]:
         """The returns that are no background, neither as it stands nor shifted by the frame's wobble."""
@@ -143,7 +141,9 @@ def _flickers(presence: _Presence) -> Bool[np.ndarray, "row column"]:
 
 def usual_depth(depths: Sequence[Float32[np.ndarray, "row column"]]) -> Float32[np.ndarray, "row column"]:
     """The median of every pixel's returns over up to 61 frames spread over the recording; NaN without any."""
-    return _quantile(np.stack([depths[number] for number in _spread(len(depths))]), 0.5)
+    return quantile_over_time(
+        np.stack([depths[number] for number in spread_numbers(len(depths), _FRAMES_FOR_MEDIAN)]), 0.5
+    )
 
 
 def noise_of_pixels(
@@ -171,17 +171,7 @@ def noise_in_time(depths: Sequence[Float32[np.ndarray, "row column"]]) -> Float3
     if len(depths) < 3:
         return np.zeros(depths[0].shape, np.float32)
     bends = [
-        np.abs(depths[number] - 2 * depths[number + 1] + depths[number + 2]) for number in _spread(len(depths) - 2)
+        np.abs(depths[number] - 2 * depths[number + 1] + depths[number + 2])
+        for number in spread_numbers(len(depths) - 2, _FRAMES_FOR_MEDIAN)
     ]
-    return np.nan_to_num(_quantile(np.stack(bends), _SHARE) / np.float32(_SIGMAS * _SECOND))
-
-
-def _spread(count: int) -> list[int]:
-    return np.unique(np.linspace(0, count - 1, _FRAMES_FOR_MEDIAN).round().astype(int)).tolist()
-
-
-def _quantile(values: Float32[np.ndarray, "frame row column"], share: float) -> Float32[np.ndarray, "row column"]:
-    """The largest of the lower share of the values over the frames, NaN left out."""
-    ordered = np.sort(values, axis=0)  # NaN goes last.
-    place = (share * np.maximum(np.isfinite(ordered).sum(axis=0) - 1, 0)).astype(int)
-    return np.take_along_axis(ordered, place[None], axis=0)[0]
+    return np.nan_to_num(quantile_over_time(np.stack(bends), _SHARE) / np.float32(_SIGMAS * _SECOND))

@@ -70,3 +70,9 @@ def lasting(trajectories: Trajectories, *, extent_m: float, frames: int) -> Traj
     high = np.maximum.reduceat(trajectories.position, starts, axis=0)
     extent = np.linalg.norm(high - low, axis=1)
     return trajectories.chosen((extent >= extent_m) & (trajectories.length >= frames))
+
+
+def thinned(trajectories: Trajectories, *, apart_px: int) -> Trajectories:
+    """The trajectories that begin in every so many columns and rows of the picture, as they are among all others."""
+    pixel = np.floor(trajectories.column_row[trajectories.first_row])
+    return trajectories.chosen((pixel % apart_px == 0).all(axis=1))

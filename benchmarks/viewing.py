@@ -23,8 +23,8 @@ from playwright.sync_api import CDPSession, sync_playwright
 from viser import GuiSliderHandle
 
 from benchmarks.tables import Row, run, show
+from recording.palette import rgb_of
 from viewer.clouds import Cloud
-from viewer.colours import numbered
 from viewer.server import ClosedServer, opened_server
 from viewer.space import Space
 from viewer.stage import CloudLayer, Stage
@@ -104,7 +104,7 @@ def _cloud(points: int, frames: int) -> Cloud:
 
 
 def _colours(cloud: Cloud) -> np.ndarray:
-    return numbered(np.arange(len(cloud.points)) % 8)
+    return rgb_of(np.arange(len(cloud.points)) % 8)
 
 
 def _stage(server: ClosedServer, cloud: Cloud) -> Stage:

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-from cyclopts import App, CycloptsError, Parameter
+from cyclopts import App, CycloptsError, Parameter, UnknownOptionError
 from cyclopts.validators import Number
 from platformdirs import user_cache_path
 from rich.console import Console
 
+from algorithm.settings import Settings
 from recording.cache import GIGABYTE, Cache
 from recording.cluster import Client, cluster
 from recording.errors import InputError
@@ -103,7 +104,8 @@ def run(app: App, arguments: list[str] | None = None, *, name: str) -> None:
     try:
         app(arguments, exit_on_error=False, print_error=False)
     except (InputError, CycloptsError) as error:
-        messages.print(f"{name}: " + " ".join(str(error).split()), markup=False)
+        sentence = (isinstance(error, UnknownOptionError) and _setting_hint(error)) or str(error)
+        messages.print(f"{name}: " + " ".join(sentence.split()), markup=False)
         sys.exit(2)
     except OSError as error:  # A name that is too long, a disk that fails: what no reader can foresee.
         messages.print(f"{name}: {error.filename or 'a file'}: cannot be used: {error.strerror}", markup=False)
@@ -114,3 +116,17 @@ def run(app: App, arguments: list[str] | None = None, *, name: str) -> None:
     except KeyboardInterrupt:
         messages.print(f"{name}: interrupted; nothing half-written is left")
         sys.exit(130)
+
+
+def _setting_hint(error: UnknownOptionError) -> str | None:
+    """What to write in place of an unknown option that is a setting of the solver; None of any other option."""
+    option = (error.token.keyword or error.token.value).partition("=")[0]
+    setting = option.strip("-").replace("-", "_")
+    if setting not in Settings.model_fields:
+        return None
+    words = " ".join(error.root_input_tokens or ()).replace("=", " ").split()
+    following = words[words.index(option) + 1 :][:1]
+    value = following[0] if following and not following[0].startswith("--") else "VALUE"
+    known = {name for argument in error.argument_collection for name in argument.names}
+    advice = "pass" if "--set" in known else "run 'unocclude solve' with"
+    return f"unknown option {option}: it is a setting of the solver: {advice} --set {setting}={value}"

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter
+from rich.filesize import decimal
 
 from commands.common import WRITING, Output, Writing
 from evaluation.scores import check_belongs
@@ -47,4 +48,4 @@ def export_command(
     with common.progress():
         export(truth, answer, folder=output, format=format_, overwrite=common.overwrite)
     written = [path for path in output.rglob("*") if path.is_file()]
-    common.say(f"written {output}: {len(written)} files, {sum(path.stat().st_size for path in written) / 1e6:.1f} MB")
+    common.say(f"written {output}: {len(written)} files, {decimal(sum(path.stat().st_size for path in written))}")

@@ -83,9 +83,11 @@ def import_command(
     pattern: str | None = None,
     masks: str | None = None,
     key: str | None = None,
+    world_frame: str | None = None,
     axes: Literal["opencv", "opengl", "ros"] = "opencv",
     dropped: Dropped = "empty",
     remove_ground: Annotated[bool, Parameter(negative="")] = False,
+    remove_background: Annotated[bool, Parameter(negative="")] = False,
     seeing: Seeing = SEEING,
     common: Writing = WRITING,
 ) -> None:
@@ -99,13 +101,18 @@ def import_command(
         pattern: Names of the files in a folder, which are taken in the order of the numbers in their names.
         masks: Names of images of object ids, one for each depth image, for the evaluation.
         key: Name of the array in a `.npz` or `.mat`, or of the topic in a bag, where there are several.
+        world_frame: Frame of a bag's transforms (`/tf_static`, `/tf`) to take for the world; by default `map`, `odom`
+            or `world`, where it is above the camera's.
         axes: How the points of clouds are meant: x right, y down, z forward; x right, y up, z backward; x forward,
             y left, z up.
         dropped: What becomes of frames that the time stamps miss: empty ones, or none at all.
         remove_ground: Leave out the largest plane and what is below it, where `solve` does not recognise it.
+        remove_background: Leave out what stands still behind everything, where `solve` does not recognise it.
     """
-    wanted = Wanted(known=seeing.calibration(), pattern=pattern, masks=masks, key=key, axes=axes)
-    treatment = Treatment(dropped=dropped, remove_ground=remove_ground)
+    wanted = Wanted(
+        known=seeing.calibration(), pattern=pattern, masks=masks, key=key, world_frame=world_frame, axes=axes
+    )
+    treatment = Treatment(dropped=dropped, remove_ground=remove_ground, remove_background=remove_background)
     with common.progress():
         made = import_recording(source, output, wanted=wanted, treatment=treatment, overwrite=common.overwrite)
     common.say(_sentence(made, output))
@@ -123,8 +130,9 @@ def _sentence(made: Imported, output: Path) -> str:
         parts.append(f"{made.empty} frames were dropped in the source and are empty")
     if made.straightened:
         parts.append("the lens's distortion is taken out")
-    if made.ground:
-        parts.append(f"left out a plane {made.ground.distance_m:.2f} m away, {made.ground.share:.0%} of the returns")
+    for removed in about.removed or ():
+        what = "the background" if removed.distance_m is None else f"a plane {removed.distance_m:.2f} m away"
+        parts.append(f"left out {what}, {removed.share:.0%} of the returns")
     return "; ".join(parts)
 
 

@@ -20,6 +20,7 @@ from evaluation.compare_tables import comparison_document, comparison_text, writ
 from evaluation.holes import hole_rows, hole_table
 from evaluation.kept import Kept
 from evaluation.methods import METHODS
+from evaluation.remarks import remarks
 from evaluation.scores import check_belongs, evidence_of, scores_of
 from evaluation.summary import summary
 from evaluation.table1 import PRESETS, measured_rows
@@ -65,12 +66,13 @@ def evaluate_command(
     if json_:
         print(json.dumps(found | ({"hole_list": [asdict(row) for row in rows]} if holes else {}), allow_nan=False))
     else:
-        print(summary(found) + (f"\n\n{hole_table(rows)}" if holes else ""))
+        print(summary(found, remarks(truth, answer)) + (f"\n\n{hole_table(rows)}" if holes else ""))
 
 
 def verify_command(
     recording: Path,
     *,
+    digest: Annotated[bool, Parameter(negative="")] = False,
     workers: Annotated[int | None, Parameter(validator=Number(gte=1))] = None,
     common: Common = COMMON,
 ) -> None:
@@ -78,16 +80,25 @@ def verify_command(
 
     Example: `unocclude verify recordings/wall`
 
+    Its last line is the recording's digest, by which motions and corrections say which recording they are of.
+
     Args:
         recording: The recording's folder, or that of a data set with its `manifest.json`.
+        digest: Print the digest alone, of any recording, and check nothing.
         workers: Processes that verify the recordings of a data set, one for each core by default.
     """
     with common.progress():
+        if digest:
+            print(load_recording(recording).digest())
+            return
         if (recording / MANIFEST).is_file():
             found: Report | SetReport = verify_set(recording, workers=workers or os.cpu_count() or 1)
+            text = found.text
         else:
-            found = verify(load_recording(recording))
-    print(found.text)
+            one = load_recording(recording)
+            found = verify(one)
+            text = f"{found.text}\ndigest: {one.digest()}"
+    print(text)
     if not found.passes:
         sys.exit(1)
 

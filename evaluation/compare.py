@@ -8,7 +8,7 @@ from pathlib import Path
 from evaluation.gap_closing import require_laptrack
 from evaluation.methods import METHODS
 from evaluation.outcome import Contest, Outcome
-from recording.checks import nearest_name
+from recording.checks import lack_of, nearest_name
 from recording.errors import InputError
 from recording.manifest import MANIFEST, load_manifest
 from recording.progress import tracked
@@ -68,7 +68,7 @@ def _expanded(given: Path) -> list[Path]:
     if (given / MANIFEST).is_file():
         return [given / entry.name for entry in load_manifest(given).recordings]
     if not (given / "recording.json").is_file():
-        raise InputError(f"{given}: expected a recording or a data set, but it holds no recording.json")
+        raise InputError(f"{given}: expected a recording or a data set, but {lack_of('recording.json', given)}")
     return [given]
 
 

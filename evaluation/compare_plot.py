@@ -8,9 +8,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
 
-from evaluation.figures.style import COLOURS, styled, write_figure
+from evaluation.figures.style import styled, write_figure
 from evaluation.hidden_time import Span
 from evaluation.interval import Interval
+from recording.palette import COLOURS
 
 Value = Callable[[Span], Interval | None]
 _PALETTE = (*COLOURS[:6], COLOURS[7])

@@ -11,9 +11,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from algorithm.depth_image import depth_range
-from evaluation.figures.style import COLOURS, write_figure
+from evaluation.figures.style import write_figure
 from recording.errors import InputError
 from recording.frame import REASONS, Frame, Reason
+from recording.palette import COLOURS
 from recording.recording import Recording
 
 _FRAMES_SHOWN = 6

@@ -15,11 +15,12 @@ from evaluation.figures.panels import (
     moments_of,
     on_plane,
 )
-from evaluation.figures.style import TRUTH, colours_of, styled, write_figure
+from evaluation.figures.style import styled, write_figure
 from recording.camera import Camera
 from recording.drawing import as_picture, draw_dots
 from recording.errors import InputError
 from recording.motions import NOISE, Motions, Representative, mean_places
+from recording.palette import TRUTH, colours_of
 from recording.recording import Recording
 from recording.visibility import visibility_of
 

@@ -1,13 +1,14 @@
 """Scores for people: a few lines with units."""
 
+from collections.abc import Sequence
 from typing import Any
 
 _NOTHING = "-"
 
 
-def summary(scores: dict[str, Any]) -> str:
-    """The scores in lines of text; "-" stands for what cannot be computed."""
-    return "\n".join(f"{name:<15} {text}" for name, text in summary_rows(scores))
+def summary(scores: dict[str, Any], remarks: Sequence[tuple[str, str]] = ()) -> str:
+    """The scores in lines of text, and remarks after them; "-" stands for what cannot be computed."""
+    return "\n".join(f"{name:<15} {text}" for name, text in [*summary_rows(scores), *remarks])
 
 
 def summary_rows(scores: dict[str, Any]) -> list[tuple[str, str]]:
@@ -16,9 +17,17 @@ def summary_rows(scores: dict[str, Any]) -> list[tuple[str, str]]:
     identity, links, seconds = scores["identity"], scores["links"], scores["seconds"]
     objects, hidden = _number(scores["objects"]), _number(completion["hidden_object_frames"])
     holes, longest = _number(scores["holes"]), _number(scores["longest_hole_frames"])
+    about = f"{scores['scene'] or 'unnamed'}: {scores['frames']} frames"
+    points = f"{_number(scores['points_per_frame'], '.0f')} points a frame"
+    if scores["objects"] is None:
+        return [
+            ("recording", f"{about}, {points}; no truth"),
+            ("motions", f"{motions['count']}, of {segments['count']} segments"),
+            ("time", _time(seconds)),
+        ]
     return [
-        ("recording", f"{scores['scene'] or 'unnamed'}: {scores['frames']} frames, {objects} moving objects"),
-        ("", f"{_number(scores['points_per_frame'], '.0f')} points a frame; holes: {holes}, longest {longest} frames"),
+        ("recording", f"{about}, {objects} moving objects"),
+        ("", f"{points}; holes: {holes}, longest {longest} frames"),
         ("motions found", f"{_number(motions['found'])} of {objects}, among {_number(motions['count'])} motions"),
         ("purity", f"{_number(motions['purity'], '.3f')}; of segments {_number(segments['purity'], '.3f')}"),
         (
@@ -45,8 +54,15 @@ def summary_rows(scores: dict[str, Any]) -> list[tuple[str, str]]:
         ("events", _events(scores["events"])),
         ("links hold", _calibration(scores["calibration"], "links")),
         ("points hold", _calibration(scores["calibration"], "completed")),
-        ("time", f"{_number(seconds['total'], '.1f')} s, of it flow {_number(seconds['flow'], '.1f')} s"),
+        ("time", _time(seconds)),
     ]
+
+
+def _time(seconds: dict[str, float | None]) -> str:
+    """What solving takes; the seconds of stages that came from the cache are those that their making took."""
+    if seconds["total"] is None:
+        return _NOTHING
+    return f"{seconds['total']:.1f} s without the cache, of it flow {_number(seconds['flow'], '.1f')} s"
 
 
 def _events(events: dict[str, Any] | None) -> str:

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from exporting.source import Moment, Source, colours
+from exporting.source import Moment, Source
+from recording.palette import rgb_of
 
 SUFFIX = ".ply"
 _PROPERTIES = (
@@ -53,7 +54,7 @@ def _vertices(moment: Moment) -> np.ndarray:
     vertices = np.empty(len(moment.position), [(name, kind) for name, _, kind in _PROPERTIES])
     for axis, name in enumerate("xyz"):
         vertices[name] = moment.position[:, axis]
-    for channel, shade in zip(("red", "green", "blue"), colours(moment.motion).T, strict=True):
+    for channel, shade in zip(("red", "green", "blue"), rgb_of(moment.motion).T, strict=True):
         vertices[channel] = shade
     vertices["alpha"] = np.where(moment.completed, _PALE, 255)
     for name in ("motion", "trajectory", "completed", "confidence"):

@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import rerun as rr
 
-from exporting.source import Moment, Source, colours, rgb
+from exporting.source import Moment, Source
 from recording.motions import NOISE, mean_places
-from recording.palette import TRUTH, colour_of
+from recording.palette import TRUTH, colour_of, rgb, rgb_of
 
 APPLICATION = "unocclude"
 FRAMES_AT_ONCE = 32
@@ -74,5 +74,5 @@ def _log_still(log: rr.RecordingStream, source: Source) -> None:
 
 
 def _log_points(log: rr.RecordingStream, entity: str, moment: Moment, radius_m: float, alpha: int) -> None:
-    shades = np.column_stack([colours(moment.motion), np.full(len(moment.motion), alpha, np.uint8)])
+    shades = np.column_stack([rgb_of(moment.motion), np.full(len(moment.motion), alpha, np.uint8)])
     log.log(entity, rr.Points3D(moment.position, colors=shades, radii=[radius_m], class_ids=moment.motion - NOISE))

@@ -5,11 +5,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from jaxtyping import Bool, Float32, Int, Int32, UInt8
+from jaxtyping import Bool, Float32, Int, Int32
 
 from recording.errors import InputError
-from recording.motions import NOISE, Motions
-from recording.palette import COLOURS, FAINT
+from recording.motions import Motions
 from recording.progress import tracked
 from recording.recording import Recording
 from recording.truth import Truth
@@ -118,15 +117,3 @@ class Source:
     def _bounds(self) -> Int[np.ndarray, "frame_and_one"]:
         counts = np.bincount(self.needed_motions("points").frame, minlength=self.frames)
         return np.concatenate([[0], np.cumsum(counts)])
-
-
-def rgb(colour: str) -> tuple[int, int, int]:
-    """Red, green and blue of a colour of the palette, 0 to 255."""
-    red, green, blue = bytes.fromhex(colour.removeprefix("#"))
-    return red, green, blue
-
-
-def colours(number: Int[np.ndarray, "point"]) -> UInt8[np.ndarray, "point 3"]:
-    """The colours of motions or objects, by turns as in all pictures; noise is faint."""
-    palette = np.array([rgb(colour) for colour in (*COLOURS, FAINT)], np.uint8)
-    return palette[np.where(number == NOISE, len(COLOURS), number % len(COLOURS))]

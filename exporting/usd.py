@@ -12,10 +12,10 @@ import numpy as np
 from jaxtyping import Float, Float64
 from pxr import Gf, Usd, UsdGeom, Vt
 
-from exporting.source import Source, rgb
+from exporting.source import Source
 from recording.camera import Camera
 from recording.motions import Motions, Representative, mean_places
-from recording.palette import TRUTH, colour_of
+from recording.palette import TRUTH, colour_of, rgb
 
 FRAMES_AT_ONCE = 32
 """So many frames are in memory before they are written."""
@@ -152,7 +152,7 @@ def _set_points(shape: UsdGeom.PointBased, points: Float[np.ndarray, "point 3"],
 
 def _paint(shape: UsdGeom.Gprim, colour: str, *, opacity: float = 1.0) -> None:
     """Give it a colour of the palette. USD has the colours of light, the palette those of screens (IEC 61966-2-1)."""
-    shade = np.array(rgb(colour)) / 255
+    shade = rgb(colour) / 255
     light = np.where(shade <= 0.04045, shade / 12.92, ((shade + 0.055) / 1.055) ** 2.4)
     shape.CreateDisplayColorAttr([Gf.Vec3f(*light.tolist())])
     shape.CreateDisplayOpacityAttr([opacity])

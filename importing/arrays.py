@@ -1,8 +1,8 @@
 """Depth in NumPy's files: one array of all frames in an `.npz` or `.npy`, read frame by frame."""
 
 import zipfile
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -11,18 +11,17 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 
 from importing.calibration import Calibration
+from importing.column_major import Read, frames_across
 from importing.images import metres
 from importing.source import DepthSource, Wanted
 from recording.checks import validated
-from recording.errors import InputError
+from recording.errors import DAMAGED, InputError
 from recording.frame import Frame
 
 DEPTH_NAMES = ("depth", "depths", "Z", "z")
 _MATRIX, _TIMES = ("K", "intrinsics", "camera_matrix"), ("timestamps", "times", "t")
-_BESIDE_BYTES = 10_000_000
-"""Cameras and time stamps are smaller than this."""
-_DAMAGED = (OSError, ValueError, EOFError, zipfile.BadZipFile, NotImplementedError, SyntaxError)
-"""What NumPy and the archive's reader raise at files that are none."""
+LARGEST_BESIDE = 1_000_000
+"""Cameras and time stamps are fewer numbers than this."""
 
 
 @runtime_checkable
@@ -55,16 +54,18 @@ def numpy_file(source: Path, wanted: Wanted) -> DepthSource:
                     for each in archive.infolist()
                     if each.filename.endswith(".npy")
                 }
-            names, small = [*sizes], [name for name, size in sizes.items() if size < _BESIDE_BYTES]
+            names, small = [*sizes], [name for name, size in sizes.items() if size < 8 * LARGEST_BESIDE]
             member = depth_name(names, wanted.key, source=source)
             with np.load(source, allow_pickle=False) as arrays:
                 others = {name: arrays[name] for name in small if name in beside_names() and name != member}
         header = _read_header(source, member)
-    except _DAMAGED as error:
+    except DAMAGED as error:
         if isinstance(error, InputError):
             raise
         raise InputError(f"{source}: expected arrays of numbers as NumPy saves them: {one_line(error)}") from None
     frames, height, width = three_sides(header.shape, source=source)
+    if header.dtype.kind not in "uif":
+        raise InputError(f"{source}: expected numbers, got {header.dtype}")
     promised, there = (
         frames * height * width * header.dtype.itemsize,
         sizes[member] if member else source.stat().st_size,
@@ -176,25 +177,35 @@ def _header(file: _Bytes) -> _Header:
 
 
 def _frames(source: Path, member: str | None, header: _Header, *, scale: float | None) -> Iterator[Frame]:
-    """Frame by frame in the order of the bytes; an array whose columns come first has to be read whole."""
-    count, height, width = three_sides(header.shape, source=source)
-    size = height * width * header.dtype.itemsize
+    """Frame by frame: in the order of the bytes, or block by block where the columns come first."""
+    shape = three_sides(header.shape, source=source)
+    opened = partial(_content, source, member)
+    images = frames_across(opened, shape, header.dtype) if header.column_major else _in_order(opened, shape, header)
+    for number, image in enumerate(images):
+        yield Frame(depth=metres(image, scale=scale, source=f"{source}, frame {number}"))
+
+
+def _in_order(
+    opened: Callable[[], AbstractContextManager[Read]], shape: tuple[int, int, int], header: _Header
+) -> Iterator[np.ndarray]:
+    count, height, width = shape
+    with opened() as read:
+        for _ in range(count):
+            yield np.frombuffer(read(height * width * header.dtype.itemsize), header.dtype).reshape(height, width)
+
+
+@contextmanager
+def _content(source: Path, member: str | None) -> Iterator[Read]:
+    """Reads the array's numbers, from the first on."""
     with _stream(source, member) as file:
         _header(file)
-        whole = _exactly(file, count * size, source) if header.column_major else b""
-        turned = np.frombuffer(whole, header.dtype).reshape((width, height, count)) if header.column_major else None
-        for number in range(count):
-            if turned is not None:
-                image = turned[..., number].T
-            else:
-                image = np.frombuffer(_exactly(file, size, source), header.dtype).reshape(height, width)
-            yield Frame(depth=metres(image, scale=scale, source=f"{source}, frame {number}"))
+        yield partial(_exactly, file, source)
 
 
-def _exactly(file: _Bytes, size: int, source: Path) -> bytes:
+def _exactly(file: _Bytes, source: Path, size: int) -> bytes:
     try:
         content = file.read(size)
-    except (zipfile.BadZipFile, EOFError, OSError) as error:
+    except DAMAGED as error:
         raise InputError(f"{source}: expected a whole archive, but {one_line(error)}") from None
     if len(content) != size:
         raise InputError(f"{source}: expected {size} more bytes, got {len(content)}: the file is not complete")

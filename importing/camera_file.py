@@ -88,7 +88,7 @@ def _file_storage(path: Path) -> dict[str, Any]:
         root = storage.root()
         nodes = {name: root.getNode(name) for name in (root.keys() if root.isMap() else ())}
         return {name: _content(node) for name, node in nodes.items()}
-    except (cv2.error, SystemError) as error:
+    except (cv2.error, SystemError, UnicodeDecodeError) as error:
         raise InputError(f"{path}: expected OpenCV's FileStorage, but {' '.join(str(error).split())}") from None
 
 
@@ -102,7 +102,7 @@ def _content(node: cv2.FileNode) -> Any:
 
 def _matrix(document: Mapping[str, Any], source: str) -> np.ndarray:
     found = _first(document, _MATRIX)
-    values = _numbers(document[_COLUMN_MAJOR] if found is None else found, f"{source}: camera matrix")
+    values = _numbers(document.get(_COLUMN_MAJOR) if found is None else found, f"{source}: camera matrix")
     if values.size != 9:
         raise InputError(f"{source}: expected a 3x3 camera matrix, got {values.size} numbers")
     matrix = values.reshape(3, 3)

@@ -9,7 +9,7 @@ from trimesh.exchange.ply import load_ply
 
 from importing.source import needed
 from recording.checks import text_of
-from recording.errors import InputError
+from recording.errors import DAMAGED, InputError
 
 
 def cloud(path: Path) -> Float[np.ndarray, "point 3"]:
@@ -18,7 +18,7 @@ def cloud(path: Path) -> Float[np.ndarray, "point 3"]:
         points = _READERS[path.suffix.lower()](path)
     except InputError:
         raise
-    except (OSError, ValueError, KeyError, IndexError, TypeError, EOFError, AttributeError, MemoryError) as error:
+    except DAMAGED as error:
         reason = " ".join(str(error).split())[:200] or type(error).__name__
         raise InputError(
             f"{path}: expected points, but it cannot be read: {reason}"

@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from importing.calibration import INTRINSICS, Calibration
 from importing.cloud_files import SUFFIXES, cloud
-from importing.images import files_like, only_suffix, usual_depth
+from importing.images import series, usual_depth
 from importing.scanner_plane import depth_of, scanner_camera
 from importing.source import DepthSource, Wanted
 from recording.camera import Camera, transformed
@@ -32,8 +32,7 @@ def cloud_folder(source: Path, wanted: Wanted) -> DepthSource:
     The points' axes are the world's. The pixels are the scanner's own where the user says them, else as large as they
     can be without two points in one. A point's unit is a metre unless `scale` says otherwise.
     """
-    pattern = f"*{only_suffix(source, SUFFIXES)}" if wanted.pattern is None else wanted.pattern
-    paths = files_like(source, pattern, "point clouds")
+    paths = series(source, wanted.pattern, SUFFIXES, "point clouds")
     wrong = next((path for path in paths if path.suffix.lower() not in SUFFIXES), None)
     if wrong is not None:
         raise InputError(f"{wrong}: expected point clouds that end in {', '.join(SUFFIXES)}: pass another pattern")

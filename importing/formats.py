@@ -43,6 +43,8 @@ def opened(source: Path, wanted: Wanted) -> DepthSource:
 
 def _folder(source: Path, wanted: Wanted) -> Opener:
     """What a folder is: a pattern says it, else a file that one format alone has, else what kind of file is in it."""
+    if (source / "recording.json").is_file():
+        raise InputError(f"{source}: expected depth to import, got a recording, which is one already")
     if wanted.pattern is not None:
         return cloud_folder if Path(wanted.pattern).suffix.lower() in CLOUDS else image_folder
     if (source / LIST).is_file():

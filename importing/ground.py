@@ -10,6 +10,7 @@ from sklearn.linear_model import LinearRegression, RANSACRegressor
 from importing.source import DepthSource
 from recording.camera import Camera, pixel_grid
 from recording.errors import InputError
+from recording.over_time import wobble_m
 from recording.progress import tracked
 
 _FRAMES_FOR_MEDIAN = 31
@@ -20,8 +21,6 @@ _LEAST_SHARE = 0.1
 """A plane with a smaller share of the returns is no ground."""
 _STEEPEST_DEG = 30.0
 """So far from level the ground may be where it is known which way is up."""
-_WOBBLE_M = 0.15
-"""Sensors shift a whole frame by some centimetres; returns within this of the plane say by how much."""
 _CLEARANCE_M = 0.05
 """What is no higher above the plane than this is ground, metres."""
 _LEAST_PIXELS = 50
@@ -35,12 +34,6 @@ class Ground:
     """1/z of the plane behind every pixel, per metre; below or equal to 0 where the pixel's ray never meets it."""
     distance_m: float
     """Of the camera from the plane."""
-    share: float
-    """Of all returns, how many lie on it."""
-
-    def without(self, depth: Float32[np.ndarray, "row column"]) -> Float32[np.ndarray, "row column"]:
-        """The depth without the ground and without what lies below it."""
-        return np.where(self.covers(depth), np.float32(np.nan), depth)
 
     def covers(self, depth: Float32[np.ndarray, "row column"]) -> Bool[np.ndarray, "row column"]:
         """Which returns lie on the ground, less than 5 cm above it, or below it.
@@ -49,8 +42,7 @@ class Ground:
         """
         with np.errstate(divide="ignore"):
             behind = depth - 1 / self.inverse_depth
-        near = behind[(self.inverse_depth > 0) & (np.abs(behind) < _WOBBLE_M)]
-        wobble = np.float32(np.median(near)) if near.size >= _LEAST_PIXELS else np.float32(0)
+        wobble = np.float32(wobble_m(behind[self.inverse_depth > 0], least=_LEAST_PIXELS))
         height = self.distance_m * (1 - (depth - wobble) * self.inverse_depth)
         return height < _CLEARANCE_M  # NaN: no.
 
@@ -76,7 +68,7 @@ def ground_of(source: DepthSource, camera: Camera, *, up_is_known: bool) -> Grou
             f"ground: expected a plane with a tenth of the returns, the largest has {share:.0%}: leave "
             "--remove-ground out"
         )
-    return Ground(inverse_depth=inverse, distance_m=float(1 / np.linalg.norm(plane)), share=share)
+    return Ground(inverse_depth=inverse, distance_m=float(1 / np.linalg.norm(plane)))
 
 
 def _plane(

@@ -1,6 +1,7 @@
 """A folder of depth images: 16-bit PNG, TIFF or PGM, or floating-point TIFF or EXR."""
 
 import re
+from collections import Counter
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
@@ -10,22 +11,21 @@ import numpy as np
 import OpenEXR
 from jaxtyping import Float32, UInt32
 
+from importing.png import LARGEST_PIXELS, png_numbers
 from importing.source import DepthSource, Wanted
 from recording.errors import InputError
+from recording.exr import hushed
 from recording.frame import FARTHEST_M, NEAREST_M, Frame, Labels
 
 SUFFIXES = (".png", ".tif", ".tiff", ".pgm", ".exr")
 MILLIMETRE = 0.001
-_LARGEST_PIXELS = 2**26
-"""No depth camera has more; a file that promises more is damaged, or means harm."""
 _EXR_CHANNELS = ("Z", "depth", "Depth", "depth.Z", "Depth.Z", "depth.V", "Depth.V", "Y", "V", "R")
 """Where renderers put depth, the likeliest first."""
 
 
 def image_folder(source: Path, wanted: Wanted) -> DepthSource:
     """The depth images in a folder, in the order of the numbers in their names."""
-    pattern = f"*{only_suffix(source, SUFFIXES)}" if wanted.pattern is None else wanted.pattern
-    images = files_like(source, pattern, "depth images")
+    images = series(source, wanted.pattern, SUFFIXES, "depth images")
     labels = files_like(source, wanted.masks, "masks") if wanted.masks else []
     return image_list(images, labels, scale=wanted.known.scale, source=source)
 
@@ -107,6 +107,20 @@ def files_like(source: Path, pattern: str, what: str) -> list[Path]:
     return found
 
 
+def series(source: Path, pattern: str | None, suffixes: tuple[str, ...], what: str) -> list[Path]:
+    """The files that a pattern names, or without one all of them, if their names are alike but for the numbers."""
+    if pattern is not None:
+        return files_like(source, pattern, what)
+    found = files_like(source, f"*{only_suffix(source, suffixes)}", what)
+    kinds = Counter(re.sub(r"[0-9]+", "*", path.name) for path in found)
+    if len(kinds) > 1 and min(kinds.values()) > 1:  # Where each has a name of its own, these say nothing.
+        listed = " and ".join(sorted(kinds))
+        raise InputError(
+            f"{source}: expected one series of {what}, found {listed}: say which by --pattern '{min(kinds)}'"
+        )
+    return found
+
+
 def only_suffix(source: Path, suffixes: tuple[str, ...]) -> str:
     """The one of the suffixes that files in the folder have; InputError where there is none, or several."""
     if not source.is_dir():
@@ -114,8 +128,10 @@ def only_suffix(source: Path, suffixes: tuple[str, ...]) -> str:
     names = {path.suffix for path in source.iterdir() if path.is_file() and not path.name.startswith(".")}
     there = sorted(name for name in names if name.lower() in suffixes)
     if not there:
+        folders = sorted(path.name for path in source.iterdir() if path.is_dir())
+        within = f" but folders: import one of them, such as {source / folders[0]}" if folders else ""
         raise InputError(
-            f"{source}: expected files named like {' or '.join(f'*{name}' for name in suffixes)}, found none"
+            f"{source}: expected files named like {' or '.join(f'*{name}' for name in suffixes)}, found none{within}"
         )
     if len(there) > 1:
         raise InputError(
@@ -141,26 +157,35 @@ def _numbers(path: Path) -> np.ndarray:
     """The numbers in an image of one channel."""
     if path.suffix.lower() == ".exr":
         return _exr_numbers(path)
+    image = png_numbers(path, source=str(path)) if path.suffix.lower() == ".png" else _other_numbers(path)
+    if image.ndim != 2 or image.dtype.kind not in "uf":
+        channels = 1 if image.ndim == 2 else image.shape[2]
+        raise InputError(f"{path}: expected one channel of numbers, got {channels} of {image.dtype}")
+    return image
+
+
+def _other_numbers(path: Path) -> np.ndarray:
+    """The numbers in a TIFF or PGM."""
+    loud = cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)
     try:
         image = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
     except cv2.error:  # More pixels than OpenCV takes.
         image = None
+    finally:
+        cv2.utils.logging.setLogLevel(loud)
     if image is None:
         raise InputError(f"{path}: expected an image, but it cannot be read: it may be damaged or of another kind")
-    if image.ndim != 2 or image.dtype.kind not in "uf":
-        channels = 1 if image.ndim == 2 else image.shape[2]
-        raise InputError(f"{path}: expected one channel of numbers, got {channels} of {image.dtype}")
     return np.asarray(image)
 
 
 def _exr_numbers(path: Path) -> np.ndarray:
     """The depth channel of an OpenEXR image, as numbers of any kind."""
     try:
-        with OpenEXR.File(str(path), separate_channels=True, header_only=True) as file:
+        with hushed(), OpenEXR.File(str(path), separate_channels=True, header_only=True) as file:
             first, last = file.header()["dataWindow"]
-        if np.prod(np.subtract(last, first, dtype=np.float64) + 1) > _LARGEST_PIXELS:
-            raise InputError(f"{path}: expected a depth image, got one of more than {_LARGEST_PIXELS} pixels")
-        with OpenEXR.File(str(path), separate_channels=True) as file:
+        if np.prod(np.subtract(last, first, dtype=np.float64) + 1) > LARGEST_PIXELS:
+            raise InputError(f"{path}: expected a depth image, got one of more than {LARGEST_PIXELS} pixels")
+        with hushed(), OpenEXR.File(str(path), separate_channels=True) as file:
             channels = {name: np.array(channel.pixels) for name, channel in file.channels().items()}
     except (RuntimeError, ValueError, MemoryError, TypeError) as error:  # OpenEXR raises what it likes.
         if isinstance(error, InputError):

@@ -8,17 +8,18 @@ from typing import Any
 
 import numpy as np
 from scipy.io import loadmat, whosmat
-from scipy.io.matlab import MatReadError
+from scipy.io.matlab import MatReadError, matfile_version
 
-from importing.arrays import beside_names, calibration_in, depth_name, one_line, three_sides, times_in
+from importing.arrays import LARGEST_BESIDE, beside_names, calibration_in, depth_name, one_line, three_sides, times_in
+from importing.column_major import BLOCK_BYTES
 from importing.images import metres
+from importing.matlab5 import images_of
 from importing.source import DepthSource, Wanted, needed
-from recording.errors import InputError
+from recording.errors import DAMAGED, InputError
 from recording.frame import Frame
 
 _HDF5 = b"MATLAB 7.3"
-_DAMAGED = (OSError, ValueError, TypeError, KeyError, EOFError, MatReadError, NotImplementedError, MemoryError)
-"""What the readers raise at files that are none."""
+_DAMAGED = (*DAMAGED, MatReadError)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,7 +43,7 @@ def matlab_file(source: Path, wanted: Wanted) -> DepthSource:
             raise
         raise InputError(f"{source}: expected a MATLAB file, but {one_line(error)}") from None
     shape = (*found.shape, 1) if len(found.shape) == 2 else found.shape
-    frames, height, width = three_sides((shape[-1], *shape[:-1]), source=source)
+    frames, height, width = three_sides((*shape[-1:], *shape[:-1]), source=source)
     calibration = calibration_in(found.others, source=source)
     read = _hdf5_images if new else _images
     return DepthSource(
@@ -52,9 +53,7 @@ def matlab_file(source: Path, wanted: Wanted) -> DepthSource:
         count=frames,
         times=times_in(found.others, frames, source=source),
         calibration=calibration,
-        frames=partial(
-            _frames, partial(read, source, found.name), source, scale=wanted.known.scale or calibration.scale
-        ),
+        frames=partial(_frames, partial(read, source, found), source, scale=wanted.known.scale or calibration.scale),
     )
 
 
@@ -71,16 +70,17 @@ def _frames(images: Any, source: Path, *, scale: float | None) -> Iterator[Frame
 def _content(source: Path, key: str | None) -> _Content:
     shapes = {name: shape for name, shape, _ in whosmat(source)}
     name = depth_name([*shapes], key, source=source)
-    wanted = [other for other in shapes if other in beside_names() and other != name]
+    small = [other for other, shape in shapes.items() if np.prod(shape, dtype=np.float64) < LARGEST_BESIDE]
+    wanted = [other for other in small if other in beside_names() and other != name]
     others = loadmat(source, variable_names=wanted) if wanted else {}
     return _Content(name=name, shape=shapes[name], others={other: np.asarray(others[other]) for other in wanted})
 
 
-def _images(source: Path, name: str) -> Iterator[np.ndarray]:
-    """The images; files of this kind hold at most 2 GB an array, which is read whole."""
-    depth = np.atleast_3d(loadmat(source, variable_names=[name])[name])
-    for number in range(depth.shape[2]):
-        yield np.ascontiguousarray(depth[..., number])
+def _images(source: Path, found: _Content) -> Iterator[np.ndarray]:
+    """The images, one by one; files before version 5 hold one alone."""
+    if matfile_version(source)[0] == 1:
+        return images_of(source, found.name, found.shape)
+    return iter([loadmat(source, variable_names=[found.name])[found.name]])
 
 
 def _hdf5_content(source: Path, key: str | None) -> _Content:
@@ -89,14 +89,22 @@ def _hdf5_content(source: Path, key: str | None) -> _Content:
     with h5py.File(source) as file:
         arrays = {name: value for name, value in file.items() if isinstance(value, h5py.Dataset)}
         name = depth_name([*arrays], key, source=source)
-        others = {other: np.asarray(arrays[other]).T for other in arrays if other in beside_names() and other != name}
+        small = [other for other, value in arrays.items() if (value.size or 0) < LARGEST_BESIDE]
+        others = {other: np.asarray(arrays[other]).T for other in small if other in beside_names() and other != name}
         return _Content(name=name, shape=arrays[name].shape[::-1], others=others)
 
 
-def _hdf5_images(source: Path, name: str) -> Iterator[np.ndarray]:
+def _hdf5_images(source: Path, found: _Content) -> Iterator[np.ndarray]:
+    """The images; where some lie in one deflated chunk, as many at a time."""
     h5py = needed("h5py", extra="matlab", what=f"{source}, a MATLAB file of version 7.3")
     with h5py.File(source) as file:
-        depth = file[name]
-        for number in range(depth.shape[0] if depth.ndim == 3 else 1):
-            image = depth[number] if depth.ndim == 3 else depth[()]
-            yield np.ascontiguousarray(image.T)
+        depth = file[found.name]
+        if depth.ndim == 2:
+            yield np.ascontiguousarray(depth[()].T)
+            return
+        count, width, height = depth.shape
+        fitting = max(1, BLOCK_BYTES // (width * height * depth.dtype.itemsize))
+        at_once = min(depth.chunks[0] if depth.chunks else 1, fitting)
+        for first in range(0, count, at_once):
+            for image in depth[first : first + at_once]:
+                yield np.ascontiguousarray(image.T)

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from importing.calibration import Calibration, rigid
 from importing.camera_file import camera_document
 from recording.checks import text_of, validated
-from recording.errors import InputError
+from recording.errors import DAMAGED, InputError
 
 STILL_M, STILL_DEG = 0.01, 0.5
 """A camera that never leaves its mean place by more than this stands still."""
@@ -90,7 +90,7 @@ def _bare_matrix(path: Path) -> np.ndarray:
         raise InputError(
             f"{path}: expected the camera's place, got: {error.strerror or 'an unreadable file'}"
         ) from None
-    except (ValueError, EOFError) as error:
+    except DAMAGED as error:
         raise InputError(f"{path}: expected 4 rows of 4 numbers, but {' '.join(str(error).split())}") from None
     if matrix.shape != (4, 4) or matrix.dtype.kind not in "iuf":
         raise InputError(f"{path}: expected 4 rows of 4 numbers, got shape {matrix.shape}")

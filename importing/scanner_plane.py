@@ -92,7 +92,10 @@ def _extent(clouds: Iterable[Float[np.ndarray, "point 3"]], source: str) -> _Ext
                 f"{source}: expected points before the scanner, at z > 0, but {behind} of {len(points)} in frame "
                 f"{number} are not: say how the axes point by --axes, or where the scanner is by --pose or --extrinsics"
             )
-        plane = points[:, :2] / points[:, 2:]
+        with np.errstate(over="ignore"):
+            plane = points[:, :2] / points[:, 2:]
+        if not np.isfinite(plane).all():
+            raise InputError(f"{source}: expected points before the scanner, got one at 90 degrees in frame {number}")
         if len(plane):
             low, high = np.minimum(low, plane.min(axis=0)), np.maximum(high, plane.max(axis=0))
             first = first if len(first) else plane

@@ -23,6 +23,8 @@ class Wanted:
     """Names of images of object ids, one for each depth image."""
     key: str | None = None
     """Name of the array in an archive, or of the topic in a bag."""
+    world_frame: str | None = None
+    """Name of the frame of a bag's transforms that is the world; by default one that ROS fixes."""
     axes: str = "opencv"
     """Which way the axes of point clouds point: a key of `clouds.AXES`."""
 

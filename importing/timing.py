@@ -11,6 +11,8 @@ from recording.errors import InputError
 Dropped = Literal["empty", "skip"]
 """A dropped frame becomes an empty one, or is left out, which puts the frames beside it next to one another."""
 LONGEST_GAP_SECONDS = 10.0
+SLOWEST_FPS, QUICKEST_FPS = 1e-3, 1e3
+"""No depth camera sees less, or more; and a gap is ten thousand empty frames at the most."""
 _LATE = 1.7
 """A frame is dropped where the next comes this many frame times later; less is jitter of the clock."""
 _TRUST = 0.2
@@ -80,6 +82,11 @@ def _rate(stamps: Float[np.ndarray, "moment"], fps: float | None, source: str) -
             raise InputError(f"{source}: expected frames a second, which one frame does not tell: pass --fps")
         return fps
     measured = float(np.round(1 / np.median(np.diff(stamps)), 3))
+    if not SLOWEST_FPS <= measured <= QUICKEST_FPS:
+        raise InputError(
+            f"{source}: expected time stamps in seconds, of {SLOWEST_FPS:g} to {QUICKEST_FPS:g} frames a second, got "
+            f"those of {measured:g}"
+        )
     if fps is None:
         return measured
     if not 2 / 3 < fps / measured < 1.5:

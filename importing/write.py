@@ -1,4 +1,4 @@
-"""From a source to a recording, frame by frame: straight pictures, empty frames for dropped ones, no ground."""
+"""From a source to a recording, frame by frame: straight pictures, empty frames for dropped ones, no background."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -6,17 +6,19 @@ from pathlib import Path
 
 import numpy as np
 
+from importing.background import background_of
 from importing.formats import opened
-from importing.ground import Ground, ground_of
+from importing.ground import ground_of
+from importing.removing import Removing
 from importing.source import DepthSource, Wanted
 from importing.timing import Dropped, Timeline, timeline
 from importing.undistort import Undistortion, undistortion
 from recording.frame import Frame, Labels
 from recording.metadata import Metadata, metadata_of
 from recording.progress import tracked
-from recording.store import write_recording
+from recording.space import check_room
+from recording.store import new_recording, write_metadata, write_picture
 from recording.version import VERSION
-from recording.xray import XRay
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,6 +29,8 @@ class Treatment:
     """What becomes of dropped frames."""
     remove_ground: bool = False
     """Leave out the returns of the largest plane."""
+    remove_background: bool = False
+    """Leave out the returns of what stands still behind everything."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -40,8 +44,6 @@ class Imported:
     """How many frames were dropped in the source, and are empty."""
     straightened: bool
     """Whether the lens's distortion was taken out."""
-    ground: Ground | None
-    """What was left out."""
 
 
 def import_recording(
@@ -62,6 +64,7 @@ def import_recording(
     shown = replace(found, frames=lambda: _straight(found, straight))
     up_is_known = known.world_from_camera is not None or asked.axes == "ros"
     ground = ground_of(shown, camera, up_is_known=up_is_known) if how.remove_ground else None
+    removing = Removing(ground=ground, background=background_of(shown) if how.remove_background else None)
     metadata = metadata_of(
         camera,
         frames=times.frames,
@@ -70,10 +73,15 @@ def import_recording(
         timestamps=times.stamps,
         made_by=f"unocclude {VERSION}",
     )
-    write_recording(folder, metadata=metadata, frames=_frames(shown, times, ground), overwrite=overwrite)
-    return Imported(
-        metadata=metadata, kind=found.kind, empty=times.empty, straightened=straight is not None, ground=ground
-    )
+    with new_recording(folder, overwrite=overwrite) as partial:
+        for number, frame in enumerate(_frames(shown, times, removing)):
+            write_picture(partial, number, frame, None, metadata=metadata)
+            if number == 0:
+                (first,) = (partial / "frames").iterdir()
+                check_room(first.stat().st_size * shown.count, partial.parent)
+        metadata = metadata.model_copy(update={"removed": removing.records()})
+        write_metadata(partial, metadata)
+    return Imported(metadata=metadata, kind=found.kind, empty=times.empty, straightened=straight is not None)
 
 
 def _straight(found: DepthSource, straight: Undistortion | None) -> Iterator[Frame]:
@@ -81,13 +89,13 @@ def _straight(found: DepthSource, straight: Undistortion | None) -> Iterator[Fra
         yield frame if straight is None else straight.frame(frame)
 
 
-def _frames(shown: DepthSource, times: Timeline, ground: Ground | None) -> Iterator[tuple[Frame, XRay | None]]:
+def _frames(shown: DepthSource, times: Timeline, removing: Removing) -> Iterator[Frame]:
     """The recording's frames; the source is read once, as they are asked for."""
     number = 0
     for place, frame in zip(times.places, tracked(shown.frames(), "importing", total=shown.count), strict=True):
         for _ in range(number, place):
-            yield _empty(frame), None
-        yield frame if ground is None else replace(frame, depth=ground.without(frame.depth)), None
+            yield _empty(frame)
+        yield removing.left_of(frame)
         number = place + 1
 
 

@@ -12,14 +12,14 @@ from pathlib import Path
 from typing import Any, Generic, TypeVar
 from uuid import uuid4
 
+from recording.errors import DAMAGED
+
 Value = TypeVar("Value")
 GIGABYTE = 10**9
 _SHARE = 64
 """A process looks at the whole folder when it has added this fraction of the limit."""
 _ABANDONED_SECONDS = 86400.0
 """A file that is not complete after so long has nobody who writes it."""
-_DAMAGED = (OSError, ValueError, KeyError)
-"""What reading a file ends with that somebody has cut or changed."""
 _added: dict[Path, int] = {}
 """Bytes that this process has added to a folder since it last looked at all of it."""
 
@@ -45,7 +45,7 @@ class Cache:
             os.utime(path)  # Used just now; disks are often mounted without times of access.
         except FileNotFoundError:
             return None
-        except _DAMAGED:
+        except DAMAGED:
             with contextlib.suppress(OSError):
                 path.unlink()
             return None

@@ -42,6 +42,13 @@ def nearest_name(name: str, known: Iterable[str]) -> str:
     return f"did you mean {close[0]!r}?" if close else "known: " + ", ".join(names)
 
 
+def lack_of(name: str, folder: Path) -> str:
+    """What there is in place of a folder that holds a file of that name, as a refusal says it."""
+    if not folder.exists():
+        return "there is no such folder"
+    return f"it holds no {name}" if folder.is_dir() else "it is a file"
+
+
 def text_of(path: Path, kind: str) -> str:
     """The text of a file in UTF-8, without a byte order mark; `kind` says in a refusal what it should be."""
     try:

@@ -134,7 +134,7 @@ def _parts(path: Path, shape: tuple[int, int]) -> list[tuple[dict[str, Any], Cha
     if not path.is_file():
         raise InputError(f"{path} is missing: the recording is not complete; make or import it again")
     try:
-        with _hushed():
+        with hushed():
             promised = _promised(path, shape)
             with OpenEXR.File(str(path), separate_channels=True) as file:
                 parts = [
@@ -169,7 +169,7 @@ def _promised(path: Path, shape: tuple[int, int]) -> list[int]:
 
 
 @contextmanager
-def _hushed() -> Iterator[None]:
+def hushed() -> Iterator[None]:
     """Within this block nothing is printed: OpenEXR writes what we say in words of ours, on both outputs.
 
     It does so by the file's number, or by `sys.stdout`, which all threads share: hence the lock.

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, NonNegativeInt, PositiveFloat, PositiveInt, model_validator
 
 from recording.atomic import whole_file
-from recording.checks import Frozen, json_document, validated
+from recording.checks import Frozen, json_document, lack_of, validated
 from recording.errors import InputError
 from recording.metadata import Metadata
 from recording.occlusion import Achieved
@@ -127,7 +127,8 @@ def load_manifest(folder: str | os.PathLike[str]) -> Manifest:
     """The manifest in the folder of a data set."""
     path = Path(folder) / MANIFEST
     if not path.is_file():
-        raise InputError(f"{folder}: expected a data set, but it holds no {MANIFEST}: make one by 'unocclude generate'")
+        what = lack_of(MANIFEST, path.parent)
+        raise InputError(f"{folder}: expected a data set, but {what}: make one by 'unocclude generate'")
     return validated(Manifest, json_document(path), source=str(path))
 
 

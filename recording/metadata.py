@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import Field, PositiveInt, field_validator, model_validator
 
 from recording.camera import PIXEL_CENTRE, Camera
-from recording.checks import Frozen
+from recording.checks import Frozen, validated
 from recording.occlusion import Occlusion
 
 Side = Annotated[int, Field(ge=1, le=16384)]
@@ -82,6 +82,17 @@ class CarriedRecord(Frozen):
     """The frame after the last: before the recording's end it was let go."""
 
 
+class RemovedRecord(Frozen):
+    """What was left out of the frames on import."""
+
+    what: Literal["ground", "background"]
+    """The largest plane and what is below it; or what stands still behind everything."""
+    share: float = Field(ge=0, le=1)
+    """Of all returns of the source, how many were left out for it."""
+    distance_m: float | None = Field(default=None, gt=0)
+    """Of the camera from the ground."""
+
+
 class Metadata(Frozen):
     """The content of `recording.json`. Only what a real recording knows is required."""
 
@@ -107,6 +118,8 @@ class Metadata(Frozen):
     scene_digest: str | None = None
     occlusion: Occlusion | None = None
     """How much is hidden, for how long and by what."""
+    removed: tuple[RemovedRecord, ...] | None = None
+    """What was left out on import, in that order; a recording that has all its returns has no such key."""
     made_by: str | None = None
 
     @model_validator(mode="after")
@@ -139,20 +152,23 @@ class Metadata(Frozen):
 def camera_record(camera: Camera) -> CameraRecord:
     """The camera as it stands in `recording.json`."""
     matrix = [tuple(map(float, row)) for row in camera.world_from_camera]
-    return CameraRecord.model_validate(
-        {"fx": camera.fx, "fy": camera.fy, "cx": camera.cx, "cy": camera.cy, "world_from_camera": matrix}
-    )
+    known = {"fx": camera.fx, "fy": camera.fy, "cx": camera.cx, "cy": camera.cy, "world_from_camera": matrix}
+    return validated(CameraRecord, known, source="camera")
 
 
 def metadata_of(camera: Camera, *, frames: int, fps: float, **known: Any) -> Metadata:
-    """The metadata of a recording through the camera; `known` are further keys of `Metadata`."""
-    return Metadata(
-        format=Format(),
-        frames=frames,
-        fps=fps,
-        width=camera.width,
-        height=camera.height,
-        camera=camera_record(camera),
-        depth=DepthRecord(),
+    """The metadata of a recording through the camera; `known` are further keys of `Metadata`.
+
+    InputError where a recording may not be so, as a camera's numbers out of bounds.
+    """
+    document = {
+        "format": Format(),
+        "frames": frames,
+        "fps": fps,
+        "width": camera.width,
+        "height": camera.height,
+        "camera": camera_record(camera),
+        "depth": DepthRecord(),
         **known,
-    )
+    }
+    return validated(Metadata, document, source="recording")

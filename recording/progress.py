@@ -28,6 +28,13 @@ def progress_shown(console: Console) -> Iterator[None]:
         _display.reset(token)
 
 
+def note(message: str) -> None:
+    """Say something while long work goes on: a line on the display's console; a library is silent."""
+    display = _display.get()
+    if display is not None:
+        display.console.print(message, markup=False)
+
+
 def tracked(items: Iterable[Item], description: str, *, total: int) -> Iterator[Item]:
     """The items, counted on the progress display in force, if any."""
     display = _display.get()

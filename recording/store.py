@@ -1,10 +1,7 @@
 """Recordings on disk: `recording.json`, `frames/`, `xray/`, `truth.npz`."""
 
 import os
-import struct
-import tokenize
 import zipfile
-import zlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import lru_cache
@@ -15,20 +12,14 @@ import numpy as np
 
 from recording.atomic import whole_folder
 from recording.camera import Camera
-from recording.checks import json_document, validated
-from recording.errors import InputError
+from recording.checks import json_document, lack_of, validated
+from recording.errors import DAMAGED, InputError
 from recording.exr import read_frame, read_xray, write_frame, write_xray
 from recording.frame import Frame
 from recording.metadata import Metadata
 from recording.recording import Recording
 from recording.truth import MeshSequence, Truth
 from recording.xray import XRay
-
-_DAMAGED = (
-    *(ArithmeticError, AttributeError, EOFError, LookupError, MemoryError, OSError, RuntimeError, SyntaxError),
-    *(TypeError, ValueError, struct.error, tokenize.TokenError, zipfile.BadZipFile, zlib.error),
-)
-"""What NumPy and zipfile end with where an archive is damaged, as fuzzing has shown."""
 
 
 def write_recording(
@@ -98,7 +89,7 @@ def load_recording(folder: str | os.PathLike[str]) -> Recording:
     place = Path(folder)
     description = place / "recording.json"
     if not description.is_file():
-        raise InputError(f"{place}: expected a recording, but it holds no recording.json")
+        raise InputError(f"{place}: expected a recording, but {lack_of(description.name, place)}")
     metadata = validated(Metadata, json_document(description), source=str(description))
     camera = metadata.as_camera()
     numbers = (_frame_path(place, number) for number in range(metadata.frames))
@@ -176,7 +167,7 @@ class _StoredTruth(Mapping[int, MeshSequence]):
             with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
                 names = [name.removeprefix("faces_") for name in arrays.files if name.startswith("faces_")]
                 self._ids = sorted(map(int, names))
-        except _DAMAGED:
+        except DAMAGED:
             raise InputError(f"{path}: expected a NumPy .npz archive: make the recording again") from None
         self._mesh = lru_cache(maxsize=None)(self._read)
 
@@ -199,7 +190,7 @@ class _StoredTruth(Mapping[int, MeshSequence]):
                 if any(_swells(arrays.zip.getinfo(f"{name}.npy")) for name in names):
                     raise damaged
                 faces, vertices = (arrays[name] for name in names)
-        except _DAMAGED:
+        except DAMAGED:
             raise damaged from None
         if not _is_mesh(faces, vertices, self._frames):
             raise damaged

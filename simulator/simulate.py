@@ -3,7 +3,7 @@
 import hashlib
 import json
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,7 +17,8 @@ from recording.metadata import CarriedRecord, Metadata, metadata_of
 from recording.occlusion import Nearness, Occlusion
 from recording.progress import tracked
 from recording.recording import Recording
-from recording.store import new_recording, write_metadata
+from recording.space import check_room
+from recording.store import frame_name, new_recording, write_metadata
 from recording.truth import Truth
 from recording.version import VERSION
 from recording.xray import XRay
@@ -27,7 +28,7 @@ from simulator.clearance import Clearance, smallest_clearance
 from simulator.pictures import Stage, pictures
 from simulator.scene import Scene, load_scene
 from simulator.sensor import on_another_day
-from simulator.shares import written_pictures
+from simulator.shares import Written, written_pictures
 from simulator.stage import Actor, actors, frame_times, walkers_centres
 from simulator.variation import varied
 
@@ -157,9 +158,19 @@ def write_simulation(
             simulation.stage, partial, metadata=metadata, backend=find_backend(backend), workers=workers
         )
         with closing(written):
-            found = list(tracked(written, f"simulating {scene.name}", total=scene.frames))
+            roomy = _with_room(written, partial, scene.frames)
+            found = list(tracked(roomy, f"simulating {scene.name}", total=scene.frames))
         tallies = [each.tally for each in sorted(found, key=lambda each: each.number)]
         write_metadata(partial, simulation.described(tallies))
+
+
+def _with_room(written: Iterable[Written], partial: Path, frames: int) -> Iterator[Written]:
+    """The pictures as they are written; InputError after the first one where the disk has no room for so many."""
+    for count, picture in enumerate(written):
+        if not count:
+            own = sum(file.stat().st_size for file in partial.glob(f"*/{frame_name(picture.number)}"))
+            check_room(own * frames, partial.parent)
+        yield picture
 
 
 def picture_size(text: str, own: tuple[int, int]) -> tuple[int, int]:

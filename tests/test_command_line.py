@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -9,26 +10,13 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+from small_scenes import PASSING
 from worlds import recorded, small_camera, sphere
 
 import unocclude
+from recording.recording import stripped
 
 ROOT = Path(__file__).parent.parent
-SCENE = """
-name = "small"
-frames = 12
-fps = 15
-[camera]
-width = 48
-height = 36
-position = [0, -4, 1.2]
-look_at = [0, 0, 1]
-horizontal_fov_deg = 60
-[[people]]
-body = "man"
-waypoints = [[-1, 0], [1, 0]]
-speed = 1.2
-"""
 
 
 def run(*arguments: object) -> int:
@@ -44,7 +32,7 @@ def run(*arguments: object) -> int:
 def solved(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A small recording that was simulated and solved by the command line."""
     folder = tmp_path_factory.mktemp("recordings")
-    (folder / "small.toml").write_text(SCENE, encoding="utf-8")
+    (folder / "small.toml").write_text(PASSING, encoding="utf-8")
     assert run("simulate", folder / "small.toml", "-o", folder, "--backend", "scalar", "--quiet") == 0
     assert run("solve", folder / "small", "--quiet", "--set", "eps4=3") == 0
     return folder / "small"
@@ -74,6 +62,30 @@ def test_verify_passes_what_was_simulated_and_fails_what_was_changed(solved: Pat
     assert run("verify", tmp_path / "moved") == 1
 
 
+def test_verify_prints_the_digest_also_of_a_recording_without_truth(
+    solved: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    recording = unocclude.load_recording(solved)
+    assert run("verify", solved) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == f"digest: {recording.digest()}"
+    unocclude.save_recording(stripped(recording), tmp_path / "bare")
+    assert run("verify", tmp_path / "bare", "--digest") == 0
+    assert capsys.readouterr().out == f"{recording.digest()}\n"
+
+
+def test_seconds_are_those_without_the_cache_where_stages_came_from_it(
+    solved: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ("solve", solved, "-o", tmp_path / "m.parquet", "--cache", tmp_path / "cache", "--overwrite")
+    assert run(*words) == 0
+    assert re.search(r" motions? in \d+\.\d s\b(?! \()", capsys.readouterr().err)
+    assert run(*words) == 0
+    again = re.search(r" in \d+\.\d s \((\d+\.\d s without the cache)\)", capsys.readouterr().err)
+    assert again is not None
+    assert run("evaluate", solved, tmp_path / "m.parquet") == 0
+    assert f"time            {again[1]}, of it flow" in capsys.readouterr().out
+
+
 def test_nothing_of_the_truth_leaks_into_the_solver(solved: Path) -> None:
     recording = unocclude.load_recording(solved)
     stripped = unocclude.Recording(
@@ -90,6 +102,32 @@ def test_results_are_not_overwritten_unless_asked_for(solved: Path, capsys: pyte
     assert run("solve", solved) == 2
     assert "--overwrite" in capsys.readouterr().err
     assert (solved / "motions.parquet").read_bytes() == before
+
+
+def test_what_solving_takes_is_said_before_and_refused_where_it_is_too_much(
+    solved: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    again = ("-o", tmp_path / "again.parquet")
+    assert run("solve", solved, *again, "--max-memory", "10MB") == 2
+    assert "expected to need 0.01 GB of memory at most" in capsys.readouterr().err
+    assert run("solve", solved, *again, "--max-memory", "much") == 2
+    assert "--max-memory: expected a size such as 4GB" in capsys.readouterr().err
+    assert not any(tmp_path.iterdir())
+    assert run("solve", solved, *again, "--max-memory", "4GB", "--set", "eps4=3") == 0
+    assert "moving points in each: about" in capsys.readouterr().err
+    assert again[1].is_file()
+
+
+def test_with_less_memory_fewer_points_are_followed(
+    solved: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    needed = unocclude.estimated(unocclude.load_recording(solved), memory_bytes=10**9).memory_bytes
+    fewer = ("-o", tmp_path / "fewer.parquet", "--max-memory", f"{needed - 1000:.0f}B")
+    assert run("solve", solved, *fewer, "--set", "eps4=3") == 0
+    assert "one point in 4 is followed" in capsys.readouterr().err
+    few, many = unocclude.load_motions(fewer[1]), unocclude.load_motions(solved / "motions.parquet")
+    assert 0 < len(few) < len(many) / 2
+    assert few.making.settings["points_apart_px"] == 2
 
 
 def test_methods_are_compared_side_by_side(solved: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -125,7 +163,7 @@ def test_images_are_imported_and_solved(tmp_path: Path, capsys: pytest.CaptureFi
     assert run("solve", place) == 0
     said = capsys.readouterr().err
     assert "imported 15 frames" in said
-    assert "1 motions" in said
+    assert "1 motion in" in said
     motions = unocclude.load_motions(place / "motions.parquet")
     assert len(motions.motion_ids) == 1
 
@@ -179,6 +217,22 @@ def test_wrong_input_gets_one_line_and_status_2(
     assert output.err.count("\n") == 1
     assert output.out == ""
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("words", "advice"),
+    [
+        ("solve x --eps3 3", "pass --set eps3=3"),
+        ("solve x --eps3=3 --quiet", "pass --set eps3=3"),
+        ("solve x --remove-static", "pass --set remove_static=VALUE"),
+        ("evaluate x --eps3 3", "run 'unocclude solve' with --set eps3=3"),
+    ],
+)
+def test_an_option_that_is_a_setting_is_answered_with_how_to_set_it(
+    words: str, advice: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(*words.split()) == 2
+    assert capsys.readouterr().err.endswith(f": it is a setting of the solver: {advice}\n")
 
 
 @pytest.mark.parametrize(

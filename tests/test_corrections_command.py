@@ -30,7 +30,9 @@ def solve(place: Path, *arguments: object) -> int:
     return 0
 
 
-def test_corrections_are_respected_and_told_of_in_the_result(place: Path, tmp_path: Path) -> None:
+def test_corrections_are_respected_and_told_of_in_the_result(
+    place: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert solve(place) == 0
     motions = unocclude.load_motions(place / "motions.parquet")
     assert (len(motions.motion_ids), motions.making.corrections) == (1, None)
@@ -48,6 +50,10 @@ def test_corrections_are_respected_and_told_of_in_the_result(place: Path, tmp_pa
     assert solve(place, "--corrections", tmp_path / "corrections.toml") == 0
     mended = unocclude.load_motions(place / "motions.parquet")
     assert (len(mended.motion_ids), mended.making.corrections) == (2, said)
+    assert ", with 1 correction by hand" in capsys.readouterr().err
+    with pytest.raises(SystemExit, match="0"):
+        unocclude.main(["evaluate", str(place)])
+    assert capsys.readouterr().out.splitlines()[-1] == "corrections     1 by hand"
 
 
 @pytest.mark.parametrize(

@@ -5,25 +5,11 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from small_scenes import PASSING
 
 import unocclude
 from simulator.simulate import prepared, write_simulation
 
-SCENE = """
-name = "small"
-frames = 12
-fps = 15
-[camera]
-width = 64
-height = 48
-position = [0, -4, 1.2]
-look_at = [0, 0, 1]
-horizontal_fov_deg = 60
-[[people]]
-body = "man"
-waypoints = [[-1, 0], [1, 0]]
-speed = 1.2
-"""
 SWEEP = 'name = "two"\nrecordings = ["small"]\nsettings = {flow = "dis"}\n[axes]\neps6 = [0.1, 0.2]\neps2 = [0.1]\n'
 
 
@@ -40,7 +26,7 @@ def run(*arguments: object) -> int:
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A recording and a sweep over it."""
     folder = tmp_path_factory.mktemp("sweeps")
-    (folder / "small.toml").write_text(SCENE, encoding="utf-8")
+    (folder / "small.toml").write_text(PASSING, encoding="utf-8")
     write_simulation(prepared(folder / "small.toml"), folder / "small", backend="scalar")
     (folder / "sweep.toml").write_text(SWEEP, encoding="utf-8")
     return folder

@@ -25,6 +25,24 @@ class Clock(Protocol):
         """Do it after some time."""
 
 
+class Delay:
+    """Does something as soon as it was not asked for again for some time."""
+
+    def __init__(self, clock: Clock, seconds: float) -> None:
+        self._clock, self._seconds = clock, seconds
+        self._timer: Timer | None = None
+
+    def do(self, action: Action) -> None:
+        """Do it later, in place of what was to be done before."""
+        self.cancel()
+        self._timer = self._clock.call_later(self._seconds, action)
+
+    def cancel(self) -> None:
+        """Let what is to be done not come."""
+        if self._timer is not None:
+            self._timer.cancel()
+
+
 class Signal:
     """Tells those who asked for it that something has changed."""
 

@@ -1,16 +1,13 @@
 """The colours of points: by motion, segment, error or depth, in the project's palette."""
 
 from dataclasses import dataclass
-from functools import cache
 from typing import Literal, get_args
 
 import numpy as np
 from jaxtyping import Bool, Float, Int, UInt8
 from matplotlib import colormaps
-from matplotlib.colors import to_rgb
 
-from recording.motions import NOISE
-from recording.palette import COLOURS, DEPTH, FAINT, TRUTH
+from recording.palette import COLOURS, DEPTH, FAINT, TRUTH, rgb, rgb_of
 from viewer.answer import Answer
 from viewer.clouds import Cloud
 
@@ -37,18 +34,6 @@ class Shades:
     """The motion that keeps its colours while all others pale; None = all keep theirs."""
     marked: tuple[int | None, ...] = ()
     """The first and the second segment that stand out, while all others pale; None = not marked yet."""
-
-
-@cache
-def rgb(colour: str) -> UInt8[np.ndarray, "3"]:
-    """A colour as the browser wants it."""
-    return np.round(255 * np.array(to_rgb(colour))).astype(np.uint8)
-
-
-def numbered(number: Int[np.ndarray, "point"]) -> UInt8[np.ndarray, "point 3"]:
-    """The colours of motions or segments, by turns as in all pictures; noise is faint."""
-    palette = np.stack([rgb(colour) for colour in (*COLOURS, FAINT)])
-    return palette[np.where(number == NOISE, len(COLOURS), number % len(COLOURS))]
 
 
 def scaled(value: Float[np.ndarray, "point"], low: float, high: float, scale: str) -> UInt8[np.ndarray, "point 3"]:
@@ -83,7 +68,7 @@ def motion_colours(cloud: Cloud, answer: Answer, shades: Shades) -> UInt8[np.nda
         known = answer.judgement.error_m[row] if answer.judgement else np.full(len(row), np.nan, np.float32)
         colours = scaled(known, 0.0, LARGEST_ERROR_M, ERROR)
     else:
-        colours = numbered(motions.motion[row] if shades.colouring == "motion" else motions.segment[row])
+        colours = rgb_of(motions.motion[row] if shades.colouring == "motion" else motions.segment[row])
     if any(segment is not None for segment in shades.marked):
         return _marked_colours(colours, motions.segment[row], shades.marked)
     return colours if shades.picked is None else pale(colours, motions.motion[row] != shades.picked)

@@ -8,7 +8,8 @@ from jaxtyping import Float64
 from viser import SceneNodeHandle
 
 from recording.motions import Motions, Representative
-from viewer.colours import MARK_COLOURS, rgb
+from recording.palette import rgb
+from viewer.colours import MARK_COLOURS
 from viewer.lines import Lines, segment_lines
 from viewer.marks import Mark, Marks
 from viewer.stage import LineLayer, Stage

@@ -7,8 +7,9 @@ import numpy as np
 from jaxtyping import Bool, Float, Float32, Int, UInt8
 
 from recording.motions import NOISE, Link, Motions, Representative, mean_places
+from recording.palette import rgb, rgb_of
 from recording.visibility import Visibility, holes
-from viewer.colours import numbered, pale, rgb
+from viewer.colours import pale
 
 HOLE, CHOSEN, OTHER = "#555555", "#009E73", "#D55E00"
 """Colours of true paths through holes, of links that were made, and of those that might have been."""
@@ -122,4 +123,4 @@ def _lines(ends: Float[np.ndarray, "line 2 3"], colour: UInt8[np.ndarray, "3"]) 
 
 
 def _colour(number: int) -> UInt8[np.ndarray, "3"]:
-    return numbered(np.array([number]))[0]
+    return rgb_of(np.array([number]))[0]

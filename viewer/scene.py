@@ -7,9 +7,10 @@ from jaxtyping import Float
 from viser import LabelHandle, SceneClickEvent, SceneNodeHandle, ViserServer
 
 from recording.motions import INTER, INTRA, Representative
+from recording.palette import rgb_of
 from viewer.boxes import Boxes, boxes_of
 from viewer.clouds import Cloud, motion_cloud, sensed_cloud
-from viewer.colours import Shades, bare_colours, motion_colours, numbered, pale
+from viewer.colours import Shades, bare_colours, motion_colours, pale
 from viewer.highlight import Highlight
 from viewer.lines import curve_lines, hole_lines, link_lines, links_of, segment_lines, segment_places
 from viewer.session import Session
@@ -48,7 +49,7 @@ class Scene:
         session.answered.connect(self._answer)
         session.judged.connect(self._rename)
         session.recoloured.connect(self._paint)
-        session.truth_known.connect(self._learn)
+        session.jury.truth_known.connect(self._learn)
         session.marks.changed.connect(self._mark)
         server.scene.on_click()(self._clicked)
 
@@ -193,19 +194,19 @@ class Scene:
         )
         number = motion[order].astype(int)
         others = np.full(len(number), False) if session.picked is None else number != session.picked
-        self._places.put(cloud, pale(numbered(number), others), first)
+        self._places.put(cloud, pale(rgb_of(number), others), first)
         links = links_of(answer.motions, session.picked) if session.picked is not None else []
         self._links.put([link_lines(links, self._segment_places)], first)
         self._links.show(bool(links), first)
 
     def _put_holes(self) -> None:
         curves = self.session.answer.curves if self.session.answer else ()
-        self._holes.put([hole_lines(self.session.visibility, curves)], self.session.frame)
+        self._holes.put([hole_lines(self.session.jury.visibility, curves)], self.session.frame)
 
     def _learn(self) -> None:
         """The truth is known now."""
-        if self.session.xray is not None:
-            self._xray.put(self.session.xray, self._bare(self.session.xray, truth=True), self.session.frame)
+        if (xray := self.session.jury.xray) is not None:
+            self._xray.put(xray, self._bare(xray, truth=True), self.session.frame)
         self._put_holes()
 
     def _bare(self, cloud: Cloud, *, truth: bool = False) -> np.ndarray:

@@ -6,17 +6,16 @@ from dataclasses import replace
 from functools import partial
 from typing import Any, Literal
 
-from algorithm.settings import Preset, Settings
-from evaluation.methods import settings_of
+from algorithm.settings import Settings
 from recording.cache import Cache
 from recording.corrections import Corrections
 from recording.motions import NOISE, Motions
 from recording.recording import Recording, stripped
-from recording.visibility import Visibility, visibility_of
-from viewer.answer import Answer, Judgement, judged
-from viewer.clock import Action, Clock, Signal, Timer
-from viewer.clouds import Cloud, xray_cloud
+from viewer.answer import Answer, Judgement
+from viewer.clock import Action, Clock, Delay, Signal
 from viewer.colours import Colouring
+from viewer.foresight import Foresight
+from viewer.jury import Jury
 from viewer.keeping import CorrectionsFile
 from viewer.marks import Marks, mark_at
 from viewer.playback import Playback
@@ -57,23 +56,22 @@ class Session:
         """Where corrections are kept, if anywhere."""
         self.marks = Marks()
         self.clicks: Clicks = "pick"
-        self.visibility: Visibility | None = None
-        self.xray: Cloud | None = None
         self.playback = Playback(frames=self.frames, fps=recording.fps, clock=clock)
         self.picked: int | None = None
         self.colouring: Colouring = "motion"
         self.status = ""
-        self.answered, self.judged, self.truth_known = Signal(), Signal(), Signal()
+        self.answered, self.judged = Signal(), Signal()
         self.picked_changed, self.recoloured, self.clicks_changed = Signal(), Signal(), Signal()
         self.status_changed, self.settings_changed, self.corrections_changed = Signal(), Signal(), Signal()
         self._clock, self._cache = clock, cache
         self._worker: Worker[Any] = Worker(self.post)
-        self._waiting: Timer | None = None
+        self.jury = Jury(recording, self.space, worker=self._worker, refused=self.say)
+        self.jury.truth_known.connect(lambda: self._judge(self.opened))
+        self._patience = Delay(clock, PATIENCE_SECONDS)
         self._busy, self._spent = False, ""
         self._granted = self.wish
         """The wish of which the motions are that are shown."""
-        self._prepared: Settings | None = None
-        """Under which the next correction is quick, for the motions that it does not change are kept."""
+        self._foresight = Foresight(self.bare, cache, worker=self._worker, refused=self.say)
         for signal in (self.picked_changed, self.marks.changed):
             signal.connect(self._prepare)
 
@@ -104,18 +102,13 @@ class Session:
 
     def begin(self) -> None:
         """Find out what the truth says, and solve where the corrections in the file are others, in the background."""
-        if self.recording.truth is None and self.recording.xray is None and not self._labelled:
-            self.say("no truth in this recording: no scores")
-        else:
+        if self.jury.has_truth:
             self.say("reading the truth ...")
-            self._worker.do(self._truth, done=self._know, refused=self.say)
+            self.jury.read()
+        else:
+            self.say("no truth in this recording: no scores")
         if self.opened is not None and self.wish != self.opened_wish:
             self.solve()
-
-    @property
-    def _labelled(self) -> bool:
-        """Whether the recording says which object stands behind a pixel."""
-        return self.recording.frames[0].labels is not None
 
     def pick(self, motion: int | None) -> None:
         """Pick a motion, or none."""
@@ -152,12 +145,7 @@ class Session:
             return
         self.wish = replace(self.wish, settings=settings)
         self.settings_changed()
-        self._hurry()
-        self._waiting = self._clock.call_later(PATIENCE_SECONDS, self.solve)
-
-    def want_preset(self, preset: Preset) -> None:
-        """Solve under a preset's settings."""
-        self.want(settings_of(self.recording, preset))
+        self._patience.do(self.solve)
 
     def correct(self, corrections: Corrections) -> None:
         """Solve under other corrections."""
@@ -165,32 +153,24 @@ class Session:
             return
         self.wish = replace(self.wish, corrections=corrections)
         self.corrections_changed()
-        self._hurry()
+        self._patience.cancel()
         self.solve()
 
     def reset(self) -> None:
         """Go back to the settings that the viewer was opened with; corrections stay."""
-        self._hurry()
+        self._patience.cancel()
         self.wish = replace(self.wish, settings=self.opened_wish.settings)
         self.settings_changed()
         self.solve()
-
-    def _hurry(self) -> None:
-        """Wait no longer whether a setting changes again."""
-        if self._waiting is not None:
-            self._waiting.cancel()
-
-    def _back(self) -> None:
-        self._spent, self._granted = "", self.wish
-        self._take(self.opened)
-        self.say("")
 
     def solve(self) -> None:
         """Solve what is wished for, in the background."""
         if self._busy:
             return  # What is being solved is followed by what is wished for then.
         if self.opened is not None and self.wish == self.opened_wish:
-            self._back()
+            self._spent, self._granted = "", self.wish
+            self._take(self.opened)
+            self.say("")
             return
         self._busy = True
         self.say("solving ...")
@@ -202,37 +182,21 @@ class Session:
         )
 
     def _prepare(self) -> None:
-        """Somebody points at something, and may correct it next: keep the motions one by one, in the background."""
-        wish, cache, pointed = self._granted, self._cache, self.picked is not None or bool(self.marks.known)
-        if cache is None or self._busy or not pointed or self._prepared == wish.settings or not wish.is_near(cache):
-            return
-        self._prepared = wish.settings
-        self._worker.do(lambda: wish.solved(self.bare, cache), done=lambda _: None, refused=self.say)
+        """Somebody points at something, and may correct it next."""
+        if not self._busy and (self.picked is not None or self.marks.known):
+            self._foresight.prepare(self._granted)
 
     def say(self, status: str) -> None:
         """Tell what is going on."""
         self.status = status
         self.status_changed()
 
-    def _truth(self) -> tuple[Visibility, Cloud]:
-        return visibility_of(self.recording), xray_cloud(self.recording, self.space)
-
-    def _know(self, truth: tuple[Visibility, Cloud]) -> None:
-        self.visibility, self.xray = truth
-        self.truth_known()
-        self._judge(self.opened)
-
     def _judge(self, answer: Answer | None) -> None:
-        visibility = self.visibility
-        if answer is None or visibility is None:
+        if answer is None or self.jury.visibility is None:
             self.say(self._spent)
             return
         self.say(f"{self._spent}, scoring ..." if self._spent else "scoring ...")
-        self._worker.do(
-            lambda: judged(self.recording, answer.motions, visibility),
-            done=partial(self._judged, answer),
-            refused=self.say,
-        )
+        self.jury.judge(answer, done=partial(self._judged, answer))
 
     def _judged(self, answer: Answer, judgement: Judgement | None) -> None:
         better = replace(answer, judgement=judgement)
@@ -252,7 +216,8 @@ class Session:
         answer = Answer(motions=motions)
         if self.opened is None:
             self.opened, self.opened_wish = answer, wish
-        self._granted, self._prepared = wish, wish.settings
+        self._granted = wish
+        self._foresight.prepared = wish.settings
         self._take(answer)
         self._spent = f"solved in {time.monotonic() - begun:.1f} s"
         if wish == self.wish:

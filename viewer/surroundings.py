@@ -9,10 +9,10 @@ from viser.transforms import SO3
 
 from algorithm.settings import Settings
 from algorithm.static import background
-from recording.palette import DEPTH, FAINT
+from recording.palette import DEPTH, FAINT, rgb
 from recording.recording import Recording
 from recording.visibility import surface_points
-from viewer.colours import rgb, scaled
+from viewer.colours import scaled
 from viewer.stage import Stage
 
 _SHARE = 0.08

@@ -12,9 +12,10 @@ from algorithm.representative import Curve
 from algorithm.trajectories import Trajectories
 from evaluation.figures.panels import ELEVATION, Plane, as_metres, on_plane
 from evaluation.figures.stages import Pair, Solved
-from evaluation.figures.style import COLOURS, COLUMN_INCHES, FAINT, PAGE_INCHES, TRUTH, colour_of
+from evaluation.figures.style import COLUMN_INCHES, PAGE_INCHES
 from recording.drawing import draw_dots
 from recording.motions import INTRA, NOISE, Representative
+from recording.palette import COLOURS, FAINT, TRUTH, colour_of
 
 _RED, _BLACK = COLOURS[1], COLOURS[7]
 _MATCHINGS = 4

@@ -7,10 +7,10 @@ import numpy as np
 from jaxtyping import Float
 from matplotlib.axes import Axes
 
-from evaluation.figures.style import colour_of, colours_of
 from recording.camera import Camera, transformed
 from recording.drawing import draw_dots, draw_stretches
 from recording.motions import NOISE, Motions, Representative
+from recording.palette import colour_of, colours_of
 from recording.recording import Recording
 
 COMPLETED, OBSERVED = 0.25, 0.9

@@ -12,10 +12,11 @@ from algorithm.lifting import SceneFlow
 from algorithm.scene_flow import Footage, flows_between
 from evaluation.figures.scenes import add_bar, draw_trajectories
 from evaluation.figures.stages import Solved
-from evaluation.figures.style import COLOURS, PAGE_INCHES
+from evaluation.figures.style import PAGE_INCHES
 from evaluation.figures.views import front_view
 from recording.camera import PIXEL_CENTRE
 from recording.drawing import draw_dots
+from recording.palette import COLOURS
 
 _ARROWS = 14
 """Rows of arrows in the picture's busy part."""

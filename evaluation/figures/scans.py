@@ -10,9 +10,10 @@ from matplotlib.figure import Figure
 from algorithm.depth_image import depth_range
 from evaluation.figures.panels import COMPLETED, OBSERVED, draw_places, draw_points, moments_of
 from evaluation.figures.stages import Solved
-from evaluation.figures.style import COLOURS, COLUMN_INCHES, DEPTH, FAINT, PAGE_INCHES, colour_of, colours_of
+from evaluation.figures.style import COLUMN_INCHES, PAGE_INCHES
 from evaluation.figures.views import View, front_view
 from recording.motions import INTER, INTRA, NOISE, Motions
+from recording.palette import COLOURS, DEPTH, FAINT, colour_of, colours_of
 
 _COLUMNS = 4
 _SIZE = 1.0

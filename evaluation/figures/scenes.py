@@ -16,10 +16,11 @@ from evaluation.figures.panels import (
     on_plane,
 )
 from evaluation.figures.stages import Solved
-from evaluation.figures.style import DEPTH, FAINT, PAGE_INCHES, TRUTH
+from evaluation.figures.style import PAGE_INCHES
 from evaluation.figures.views import View
 from recording.drawing import draw_dots
 from recording.motions import NOISE, Motions
+from recording.palette import DEPTH, FAINT, TRUTH
 
 _LINES = 1500
 """Trajectories drawn at the most."""
@@ -120,7 +121,7 @@ def draw_curves(axes: Axes, case: Solved) -> None:
     for curve in case.representatives:
         draw_curve(axes, case.above.picture(curve.position), curve)
     case.above.frame(axes)
-    axes.set_title(f"curves of {len(case.representatives)} motions (dotted: completed; grey: truth)")
+    axes.set_title(_curves_title(case))
 
 
 def draw_plane(axes: Axes, case: Solved) -> None:
@@ -130,7 +131,12 @@ def draw_plane(axes: Axes, case: Solved) -> None:
     for curve in case.representatives:
         draw_curve(axes, on_plane(case.recording, curve.position, case.plane), curve)
     as_metres(axes, case.plane)
-    axes.set_title(f"curves of {len(case.representatives)} motions (dotted: completed; grey: truth)")
+    axes.set_title(_curves_title(case))
+
+
+def _curves_title(case: Solved) -> str:
+    grey = "; grey: truth" if case.centres else ""
+    return f"curves of {len(case.representatives)} motions (dotted: completed{grey})"
 
 
 def draw_completed(axes: Axes, case: Solved, *, size: float) -> None:

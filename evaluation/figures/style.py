@@ -1,4 +1,4 @@
-"""How all pictures look: one palette, one size of letters, one way to disk."""
+"""How all pictures look: one size of letters, one way to disk."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -8,21 +8,6 @@ import matplotlib as mpl
 from matplotlib.figure import Figure
 
 from recording.atomic import whole_file
-from recording.palette import COLOURS, DEPTH, FAINT, TRUTH, colour_of, colours_of
-
-__all__ = [
-    "COLOURS",
-    "COLUMN_INCHES",
-    "DEPTH",
-    "FAINT",
-    "KINDS",
-    "PAGE_INCHES",
-    "TRUTH",
-    "colour_of",
-    "colours_of",
-    "styled",
-    "write_figure",
-]
 
 COLUMN_INCHES, PAGE_INCHES = 3.4, 7.0
 """Widths of figures as they are printed, in one column or across the page."""

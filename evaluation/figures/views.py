@@ -7,8 +7,8 @@ from jaxtyping import Float
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 
-from evaluation.figures.style import FAINT
 from recording.camera import Camera, looking_at
+from recording.palette import FAINT
 from recording.recording import Recording
 
 _ELEVATION = np.radians(30.0)

@@ -15,9 +15,9 @@ import numpy as np
 from jaxtyping import Float, Int, UInt8
 
 from evaluation.figures.stages import Solved
-from evaluation.figures.style import COLOURS, FAINT, TRUTH, colour_of
 from evaluation.report.page import View
 from recording.motions import NOISE, Representative
+from recording.palette import COLOURS, FAINT, TRUTH, colour_of
 from recording.progress import tracked
 from recording.recording import Recording
 from recording.visibility import surface_points

@@ -136,6 +136,7 @@ HEADLINES = (
     "completion.mean_m",
 )
 """What a page begins with."""
+HEADLINES_WITHOUT_TRUTH = ("motions.count", "segments.count", "trajectories.count")
 
 
 def meaning_of(key: str) -> Meaning:

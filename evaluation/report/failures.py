@@ -7,15 +7,15 @@ from matplotlib.figure import Figure
 
 from evaluation.clustering import FOUND_FROM
 from evaluation.figures.stages import Solved
-from evaluation.figures.style import FAINT
 from evaluation.observations import BACKGROUND
 from evaluation.report.images import drawn
 from evaluation.report.moments import RIGHT, WRONG, Dots, Panel, draw_panels, draw_plan, motion_dots, strip
-from evaluation.report.page import Block, Card, Cards, Picture, Section, Text
+from evaluation.report.page import Card, Cards, Picture, Section, Text
 from evaluation.report.worst import LinkRow, SegmentRow, unbridged_holes, worst_links, worst_segments
 from evaluation.scores import Evidence
 from recording.camera import PIXEL_CENTRE
 from recording.motions import NOISE
+from recording.palette import colour_of
 from recording.visibility import HiddenRun
 
 SHOWN = 4
@@ -24,25 +24,40 @@ _MIXED_FROM = 0.01
 """Share of wrong points from which on a segment counts as a failure."""
 
 
-def failures_section(case: Solved, evidence: Evidence) -> Section:
-    """What went wrong, or the nearest to it."""
-    segments, links, missed = worst_segments(evidence), worst_links(evidence), unbridged_holes(evidence)
-    blocks: list[Block] = [Text(words=_words(evidence, segments, links, missed))]
-    if segments:
-        cards = tuple(_segment_card(case, evidence, row) for row in segments[:SHOWN])
-        blocks.append(Cards(title=_heading("Worst segments", len(cards), len(segments)), items=cards))
-    if missed:
-        cards = tuple(_missed_card(case, evidence, hole) for hole in missed[:SHOWN])
-        blocks.append(Cards(title=_heading("Holes that no motion bridges", len(cards), len(missed)), items=cards))
-    if links:
-        cards = tuple(_link_card(case, evidence, row) for row in links[:SHOWN])
-        blocks.append(Cards(title=_heading("Worst links", len(cards), len(links)), items=cards))
+def failures_section(case: Solved, evidence: Evidence) -> Section | None:
+    """What went wrong, or the nearest to it; without truth what may be wrong, None where nothing is in doubt."""
+    links = worst_links(evidence)
+    if not evidence.visibility.labelled:
+        return _doubts_section(case, evidence, links) if links else None
+    segments, missed = worst_segments(evidence), unbridged_holes(evidence)
+    mixed, wrong = [row for row in segments if _mixes(row)], [row for row in links if row.right is False]
+    of_segments = [_segment_card(case, evidence, row) for row in segments[:SHOWN]]
+    of_holes = [_missed_card(case, evidence, hole) for hole in missed[:SHOWN]]
+    of_links = [_link_card(case, evidence, row) for row in links[:SHOWN]]
+    in_order = "Worst links" if wrong else "Links, all of them right, the least sure first"
+    groups = [
+        (mixed, _cards("Worst segments" if mixed else "Segments, none of which mixes objects", of_segments, segments)),
+        (missed, _cards("Holes that no motion bridges", of_holes, missed)),
+        (wrong, _cards(in_order, of_links, links)),
+    ]
+    groups.sort(key=lambda group: not group[0])  # Where nothing failed comes last.
+    shown = (cards for _, cards in groups if cards.items)
     return Section(
         key="failures",
         title="Failures first",
         lead="Blue dots are right, orange ones wrong; rings are completed; the black line is the true "
         "outline of the object, hidden or not; in plans the grey band is the truth.",
-        blocks=tuple(blocks),
+        blocks=(Text(words=_words(evidence, segments, links, missed)), *shown),
+    )
+
+
+def _doubts_section(case: Solved, evidence: Evidence, links: Sequence[LinkRow]) -> Section:
+    cards = [_link_card(case, evidence, row) for row in links[:SHOWN]]
+    return Section(
+        key="failures",
+        title="Links in doubt",
+        lead="The recording holds no truth to judge by: these are the links that the solver is least sure of.",
+        blocks=(_cards("The least sure first", cards, links),),
     )
 
 
@@ -66,25 +81,32 @@ def _percent(share: float) -> str:
     return "under 0.1 %" if 0 < share < 0.001 else f"{100 * share:.1f} %"
 
 
-def _heading(words: str, shown: int, count: int) -> str:
-    return f"{words}, {shown} of {count}" if shown < count else words
+def _cards(words: str, shown: Sequence[Card], every: Sequence[object]) -> Cards:
+    """Cards under words, with how many of all they are."""
+    share = f", {len(shown)} of {len(every)}" if len(shown) < len(every) else ""
+    return Cards(title=words + share, items=tuple(shown))
+
+
+def _mixes(row: SegmentRow) -> bool:
+    """Whether so many of its points are wrong that the segment counts as a failure."""
+    return row.share > _MIXED_FROM
 
 
 def _words(
     evidence: Evidence, segments: Sequence[SegmentRow], links: Sequence[LinkRow], missed: Sequence[HiddenRun]
 ) -> str:
-    """The sum of it in sentences."""
-    if not evidence.visibility.labelled:
-        return "The recording holds no truth to judge by: shown are the links that the solver is least sure of."
+    """The sum of it in a sentence."""
     ids = evidence.visibility.ids
     lost = [one for one in ids if evidence.motion_of.get(one, (0, 0.0))[1] < FOUND_FROM]
     extra = sorted(set(evidence.motions.motion_ids) - set(evidence.motion_of_object.values()))
-    mixed, wrong = sum(row.wrong > 0 for row in segments), sum(row.right is False for row in links)
+    mixed, wrong = sum(map(_mixes, segments)), sum(row.right is False for row in links)
+    if not (lost or extra or mixed or wrong or missed):
+        return "No failures: every object is found, and no motion, segment, link or hole is wrong."
     names = f" ({', '.join(object_name(evidence, one) for one in lost)})" if lost else ""
     beyond = f" (motion{'s' * (len(extra) > 1)} {', '.join(map(str, extra))})" if extra else ""
     return (
         f"{len(lost)} of {len(ids)} objects not found{names}; {len(extra)} motions that stand for no object{beyond}; "
-        f"{mixed} of {len(segments)} segments with points of more than one object; "
+        f"{mixed} of {len(segments)} segments with more than {100 * _MIXED_FROM:.0f} % of points of other objects; "
         f"{wrong} of {len(links)} links wrong; {len(missed)} holes not bridged."
     )
 
@@ -101,7 +123,7 @@ def _segment_card(case: Solved, evidence: Evidence, row: SegmentRow) -> Card:
         words=words,
         picture=_segment_picture(case, evidence, row),
         frame=row.frame,
-        bad=row.share > _MIXED_FROM,
+        bad=_mixes(row),
     )
 
 
@@ -171,12 +193,12 @@ def _link_card(case: Solved, evidence: Evidence, row: LinkRow) -> Card:
     for segment, at in ((link.before, np.max), (link.after, np.min)):
         frames = motions.frame[motions.observed & (motions.segment == segment)]
         ends.append((segment, int(at(frames)) if len(frames) else 0))
-    verdict = {True: "Right", False: "Wrong: the segments are not of one object", None: "Unknown whether right"}
+    of_one = {True: "Right; confidence", False: "Wrong: not of one object; confidence", None: "Confidence"}
     (_, last), (_, following) = ends
     gap = count_words(max(following - last - 1, 0))
     return Card(
         title=f"Segment {link.before} to {link.after}",
-        words=f"{verdict[row.right]}; confidence {link.confidence:.2f}; {gap} between them.",
+        words=f"{of_one[row.right]} {link.confidence:.2f}; {gap} between them.",
         picture=_link_picture(case, evidence, row, ends),
         frame=last,
         bad=row.right is False,
@@ -185,8 +207,8 @@ def _link_card(case: Solved, evidence: Evidence, row: LinkRow) -> Card:
 
 def _link_picture(case: Solved, evidence: Evidence, row: LinkRow, ends: Sequence[tuple[int, int]]) -> Picture:
     """The segments in the frames where the first one ends and the second one begins; between them the path."""
-    motions = evidence.motions
-    colour = {True: RIGHT, False: WRONG, None: FAINT}[row.right]
+    motions, of = evidence.motions, _motions_of(case, row.link.before)
+    colour = {True: RIGHT, False: WRONG, None: colour_of((of or [NOISE])[0])}[row.right]
     panels = []
     for segment, frame in ends:
         own = motions.observed & (motions.segment == segment) & (motions.frame == frame)
@@ -196,7 +218,7 @@ def _link_picture(case: Solved, evidence: Evidence, row: LinkRow, ends: Sequence
     def figure() -> Figure:
         made, axes = strip(1, 1, 1)
         draw_panels(case, panels, [axes[0], axes[2]])
-        draw_plan(axes[1], case, _motions_of(case, row.link.before), evidence.visibility.ids)
+        draw_plan(axes[1], case, of, evidence.visibility.ids)
         axes[1].set_title("path of the motion")
         return made
 

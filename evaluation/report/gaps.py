@@ -7,7 +7,6 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from evaluation.figures.stages import Solved
-from evaluation.figures.style import COLOURS, FAINT
 from evaluation.holes import HoleRow
 from evaluation.report.definitions import NOTHING
 from evaluation.report.failures import count_words, frames_words, hole_picture
@@ -16,6 +15,7 @@ from evaluation.report.page import Block, Card, Cards, Fold, Section, Table, Tex
 from evaluation.report.worst import worst_holes
 from evaluation.scores import Evidence
 from recording.motions import Representative
+from recording.palette import COLOURS, FAINT
 
 _MOST = 60
 """Holes with pictures; the table has all of them."""

@@ -4,6 +4,7 @@ from typing import Any
 
 from algorithm.settings import Settings
 from evaluation.methods import settings_of
+from evaluation.remarks import count_by_hand
 from evaluation.report.definitions import NOTHING
 from evaluation.report.page import Bars, Block, Fold, Section, Table, Text
 from recording.motions import Making
@@ -33,10 +34,11 @@ def making_section(recording: Recording, making: Making) -> Section:
         ("sensor", str(sensor) if sensor else NOTHING),
         ("seed", NOTHING if known.seed is None else str(known.seed)),
         ("recording made by", known.made_by or NOTHING),
-        ("recording digest", _short(making.recording_digest)),
+        ("recording digest", making.recording_digest or NOTHING),
         ("scene digest", _short(known.scene_digest)),
         ("solved by", f"Unocclude {making.version}" if making.version else NOTHING),
         ("preset", str(making.settings.get("preset", NOTHING))),
+        ("corrections by hand", str(count_by_hand(making))),
     )
     blocks: list[Block] = [_table("Recording and solver", ("what", "value"), rows)]
     return Section(key="making", title="What was run", blocks=(*blocks, *_settings_blocks(recording, making.settings)))
@@ -55,7 +57,7 @@ def seconds_section(making: Making) -> Section | None:
     items = tuple(
         (name, f"{value:.1f} s, {100 * value / total:.0f} %", value / longest) for name, value in known.items()
     )
-    caption = f"Seconds of wall clock by stage, {total:.1f} s in all"
+    caption = f"Seconds of wall clock by stage without the cache, {total:.1f} s in all"
     return Section(key="seconds", title="Time by stage", blocks=(Bars(caption=caption, items=items),))
 
 

@@ -11,9 +11,9 @@ from matplotlib.figure import Figure
 from algorithm.depth_image import depth_range
 from evaluation.figures.panels import as_metres, draw_curve, on_plane
 from evaluation.figures.stages import Solved
-from evaluation.figures.style import COLOURS, TRUTH, colour_of
 from recording.camera import PIXEL_CENTRE
 from recording.motions import Representative
+from recording.palette import COLOURS, TRUTH, colour_of
 
 PANEL_INCHES = 2.5
 _ROOM = 0.35

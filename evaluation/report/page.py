@@ -7,8 +7,8 @@ from typing import ClassVar
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from evaluation.figures.style import COLOURS
 from recording.atomic import whole_file
+from recording.palette import COLOURS
 from recording.version import VERSION
 
 _ASSETS = Path(__file__).parent / "assets"

@@ -9,6 +9,7 @@ from evaluation.report.side_by_side import COMPARISON, comparison_page
 from evaluation.report.solved import solved_page
 from evaluation.report.swept import SUMMARY, sweep_page
 from evaluation.scores import check_belongs
+from recording.checks import lack_of
 from recording.errors import InputError
 from recording.motions import Motions
 from recording.parquet import load_motions
@@ -33,7 +34,7 @@ def load_solved(folder: Path, motions: Path | None = None) -> tuple[Recording, M
     """A recording and its motions, by default those in its folder; InputError where they do not belong together."""
     place = motions or folder / "motions.parquet"
     if not is_recording(folder):
-        raise InputError(f"{folder}: expected a recording, but it holds no {RECORDING}")
+        raise InputError(f"{folder}: expected a recording, but {lack_of(RECORDING, folder)}")
     if not place.is_file():
         raise InputError(f"{place}: expected motions, but there are none: run 'unocclude solve {folder}' first")
     recording, found = load_recording(folder), load_motions(place)
@@ -46,9 +47,9 @@ def report_page(folder: Path, motions: Path | None = None) -> Page:
     if is_recording(folder):
         return solved_page(*load_solved(folder, motions))
     if motions is not None:
-        raise InputError(f"{folder}: expected a recording beside the motions, but it holds no {RECORDING}")
+        raise InputError(f"{folder}: expected a recording beside the motions, but {lack_of(RECORDING, folder)}")
     page = next((make for name, make in _PAGES.items() if (folder / name).is_file()), None)
     if page is None:
-        known = ", ".join((RECORDING, *_PAGES))
-        raise InputError(f"{folder}: expected a recording or what compare, sweep or table1 left, but none of {known}")
+        what = lack_of(" or ".join((RECORDING, *_PAGES)), folder)
+        raise InputError(f"{folder}: expected a recording or what compare, sweep or table1 left, but {what}")
     return page(folder)

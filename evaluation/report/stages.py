@@ -23,7 +23,11 @@ _PRINTED = 7.0
 
 
 def stages_section(case: Solved) -> Section:
-    """Depth, flow, trajectories, segments, representatives, candidates, matching, completed motion."""
+    """Depth, flow, trajectories, segments, representatives, candidates, matching, completed motion.
+
+    What there is not, the truth or links, has no picture and no word.
+    """
+    beneath = "; beneath it the truth" if case.centres else ""
     return Section(
         key="stages",
         title="Stage by stage",
@@ -48,14 +52,9 @@ def stages_section(case: Solved) -> Section:
             _of_panels(
                 case,
                 (lambda axes: draw_curves(axes, case), lambda axes: draw_plane(axes, case)),
-                "The one curve that stands for each motion, dotted where it was completed; beneath it the truth.",
+                f"The one curve that stands for each motion, dotted where it was completed{beneath}.",
             ),
-            _of_figure(
-                case,
-                candidates_figure,
-                "Polynomials that could have joined two segments; those that were joined are shaded.",
-            ),
-            _of_figure(case, matchings_figure, "The links that were chosen, and what else might have been."),
+            *_link_pictures(case),
             _of_panels(
                 case,
                 (lambda axes: draw_completed(axes, case, size=_DOT),),
@@ -63,6 +62,17 @@ def stages_section(case: Solved) -> Section:
             ),
         ),
     )
+
+
+def _link_pictures(case: Solved) -> list[Picture]:
+    pictures = []
+    if case.candidates:
+        caption = "Polynomials that could have joined two segments; those that were joined are shaded."
+        pictures.append(_of_figure(case, candidates_figure, caption))
+    if case.links:
+        caption = "The links that were chosen, and what else might have been."
+        pictures.append(_of_figure(case, matchings_figure, caption))
+    return pictures
 
 
 def _of_figure(case: Solved, draw: Callable[[Sequence[Solved]], Figure], caption: str) -> Picture:

@@ -16,11 +16,12 @@ from PIL import Image
 from algorithm.depth_image import DepthRange, depth_range
 from evaluation.figures.panels import draw_curve, draw_places, draw_points
 from evaluation.figures.stages import Solved
-from evaluation.figures.style import COLOURS, FAINT, colours_of, styled
+from evaluation.figures.style import styled
 from recording.atomic import whole_file
 from recording.drawing import as_picture, draw_dots
 from recording.errors import InputError
 from recording.motions import NOISE
+from recording.palette import COLOURS, FAINT, colours_of
 from recording.progress import tracked
 
 KINDS = (".mp4", ".gif")

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TextIO
 
+from pydantic import TypeAdapter, ValidationError
+
 from recording.atomic import whole_file
 
 _NAME = ".unfinished.jsonl"
@@ -21,6 +23,9 @@ class Done:
     """By dotted key."""
     failure: str | None = None
     """Why there are no scores."""
+
+
+_READER = TypeAdapter(Done)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,5 +62,13 @@ def _known(path: Path) -> dict[str, Done]:
     if not path.is_file():
         return {}
     lines = path.read_text(encoding="utf-8", errors="replace").splitlines(keepends=True)
-    done = (Done(**json.loads(line)) for line in lines if line.endswith("\n"))
-    return {one.key: one for one in done if one.failure is None}
+    done = (_done(line) for line in lines if line.endswith("\n"))
+    return {one.key: one for one in done if one is not None and one.failure is None}
+
+
+def _done(line: str) -> Done | None:
+    """What a line says; None where it is damaged: that trial is run again."""
+    try:
+        return _READER.validate_json(line)
+    except ValidationError:
+        return None

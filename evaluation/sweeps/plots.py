@@ -11,11 +11,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from algorithm.settings import preset_settings
-from evaluation.figures.style import COLOURS, styled, write_figure
+from evaluation.figures.style import styled, write_figure
 from evaluation.paper_rows import PAPER
 from evaluation.sweeps.levels import Level, by, interval_of, levels_of
 from evaluation.sweeps.plan import Sweep, Value
 from evaluation.sweeps.table import Row
+from recording.palette import COLOURS
 
 _IN_A_ROW = 3
 _PANEL = (4.4, 3.3)

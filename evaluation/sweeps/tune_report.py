@@ -9,10 +9,11 @@ from typing import Any
 from matplotlib.figure import Figure
 from tabulate import tabulate
 
-from evaluation.figures.style import COLOURS, FAINT, styled, write_figure
+from evaluation.figures.style import styled, write_figure
 from evaluation.sweeps.plan import Sweep
 from evaluation.sweeps.tune import Attempt
 from recording.atomic import whole_file
+from recording.palette import COLOURS, FAINT
 from recording.version import VERSION
 
 _LISTED = 10

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from algorithm.continuation import Candidates
 from algorithm.guidance import Guidance, joined
 from algorithm.guided import guided
-from algorithm.linking import Links, Standing, linked
+from algorithm.linking import Links, Standing, confidences, linked
 from recording.errors import InputError
 from recording.motions import Link
 
@@ -88,6 +88,14 @@ def test_a_forced_link_leaves_the_rest_as_likely_as_can_be(seed: int, forced: tu
         restlessness=possible.restlessness[free],
     )
     assert made - {forced} == pairs_of(linked(rest, standing))
+
+
+@given(seed=st.integers(0, 10**6), forced=pair)
+def test_a_forced_link_is_certain(seed: int, forced: tuple[int, int]) -> None:
+    possible, standing, span = world(seed)
+    found = guided(possible, standing, Guidance(force=(forced,)), span)
+    is_forced = (found.before == forced[0]) & (found.after == forced[1])
+    assert confidences(found)[is_forced].tolist() == [1.0]
 
 
 def test_what_is_bound_and_different_is_refused() -> None:

@@ -12,7 +12,7 @@ from worlds import small_camera
 from algorithm.chaining import chained
 from algorithm.matching import Pairs
 from algorithm.observations import sorted_trajectories
-from algorithm.trajectories import Trajectories, lasting
+from algorithm.trajectories import Trajectories, lasting, thinned
 
 CAMERA = small_camera(3, 2)
 NONE = (np.zeros(0, int), np.zeros(0, int))
@@ -112,3 +112,14 @@ def test_the_chosen_are_numbered_anew() -> None:
     np.testing.assert_array_equal(some.position[some.first_row, 0], [1, 3, 4])
     assert_well_formed(some)
     assert replace(made).chosen(np.zeros(5, bool)).count == 0
+
+
+def test_fewer_points_are_the_same_points() -> None:
+    depths = [full(depth) for depth in (2.0, 2.1, 2.2)]
+    everyone = pairs(*((pixel, pixel) for pixel in range(6)))
+    every = trajectories_along(depths, [everyone, everyone])
+    fewer = thinned(every, apart_px=2)
+    np.testing.assert_array_equal(fewer.column_row[fewer.first_row], [[0.5, 0.5], [2.5, 0.5]])
+    np.testing.assert_array_equal(fewer.position, every.chosen(np.isin(np.arange(6), [0, 2])).position)
+    assert thinned(every, apart_px=1).count == every.count
+    assert thinned(every.chosen(np.zeros(6, bool)), apart_px=3).count == 0

@@ -5,8 +5,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from crossing import CROSSING
 from playwright.sync_api import Locator, Page, expect
+from small_scenes import CROSSING
 
 import unocclude
 
@@ -167,11 +167,23 @@ def test_a_hole_is_shown_in_3d_at_its_time(scene: Page, keep: Callable[[str], Pa
 
 
 def test_it_is_readable_on_a_projector_and_on_a_telephone(scene: Page, keep: Callable[[str], Path]) -> None:
-    for width, height in ((1920, 1080), (400, 800)):
+    for width, height in ((1920, 1080), (1200, 800), (800, 600), (400, 800)):
         scene.set_viewport_size({"width": width, "height": height})
         scene.locator("#scene").scroll_into_view_if_needed()
         assert scene.evaluate("document.documentElement.scrollWidth") <= width
+        ends = [link.bounding_box() for link in scene.locator("nav a").all()]
+        assert all(end is not None and end["x"] + end["width"] <= width for end in ends)
         keep(f"report-{width}")
+
+
+def test_a_link_of_the_menu_leads_to_a_heading_that_the_menu_does_not_hide(scene: Page) -> None:
+    for width in (1400, 1200, 800, 400):
+        scene.set_viewport_size({"width": width, "height": 700})
+        scene.locator("nav a", has_text="Each hole").click()
+        heading, menu = (scene.locator(one).bounding_box() for one in ("#holes-title", "nav"))
+        assert heading is not None
+        assert menu is not None
+        assert heading["y"] >= menu["y"] + menu["height"] or menu["y"] + menu["height"] < 0
 
 
 def test_without_webgl_the_page_says_so(page: Page, report: Path) -> None:

@@ -6,8 +6,8 @@ from xml.etree import ElementTree
 import cv2
 import numpy as np
 import pytest
-from crossing import CROSSING
 from matplotlib.figure import Figure
+from small_scenes import CROSSING
 
 from algorithm.pipeline import solve
 from algorithm.settings import Settings, preset_settings

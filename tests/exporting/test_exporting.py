@@ -16,10 +16,9 @@ from trackeval.datasets import MotChallenge2DBox
 
 import unocclude
 from exporting.export import ABOUT, FormatName, export
-from exporting.source import rgb
 from recording.errors import InputError
 from recording.motions import NOISE, Motions
-from recording.palette import COLOURS, FAINT
+from recording.palette import COLOURS, FAINT, rgb
 from recording.recording import Recording, stripped
 
 FORMATS: tuple[FormatName, ...] = ("ply", "tapvid3d", "mot", "usd", "rerun")
@@ -70,7 +69,7 @@ def test_trimesh_reads_every_point_of_a_frame_with_its_colour_and_marks(exported
         cloud = trimesh.load(exported("ply") / f"{frame:06d}.ply")
         rows = motions.rows(motions.frame == frame)
         np.testing.assert_array_equal(cloud.vertices, rows.position)
-        assert {tuple(shade[:3]) for shade in cloud.colors.tolist()} == {rgb(COLOURS[0])}
+        assert {tuple(shade[:3]) for shade in cloud.colors.tolist()} == {tuple(rgb(COLOURS[0]))}
         vertices = cloud.metadata["_ply_raw"]["vertex"]["data"]
         np.testing.assert_array_equal(vertices["completed"].ravel(), ~rows.observed)
         np.testing.assert_array_equal(vertices["trajectory"].ravel(), rows.trajectory)
@@ -85,7 +84,7 @@ def test_noise_is_faint_and_a_frame_without_points_is_an_empty_cloud(
     export(
         recording, Motions(**columns, motion=np.full(len(first), NOISE, np.int32)), folder=tmp_path / "o", format="ply"
     )
-    assert set(map(tuple, trimesh.load(tmp_path / "o" / "000000.ply").colors[:, :3].tolist())) == {rgb(FAINT)}
+    assert set(map(tuple, trimesh.load(tmp_path / "o" / "000000.ply").colors[:, :3].tolist())) == {tuple(rgb(FAINT))}
     assert b"element vertex 0\n" in (tmp_path / "o" / "000001.ply").read_bytes()
 
 

@@ -1,6 +1,8 @@
 """Depth arrays of NumPy and MATLAB give back what was put in, with the camera that lies beside them."""
 
+import struct
 import sys
+import tracemalloc
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -11,7 +13,10 @@ import pytest
 from imports import FRAMES, HEIGHT, KNOWN, TIMES, WIDTH, assert_depths, depth_m, depth_mm, imported, refusal
 from scipy.io import savemat
 
+from importing import column_major
 from importing.calibration import Calibration
+from importing.formats import opened
+from importing.source import Wanted
 
 K = np.array([[300.0, 0, 3.5], [0, 310.0, 2.0], [0, 0, 1]])
 BESIDE: dict[str, Any] = {"K": K, "timestamps": np.array(TIMES)}
@@ -43,6 +48,52 @@ def test_any_numbers_in_any_order(tmp_path: Path, kind: type, order: str) -> Non
     values = depth_mm() if kind is np.int32 else depth_m(depth_mm())
     np.save(tmp_path / "a.npy", np.asarray(values, dtype=kind, order=order))  # type: ignore[call-overload]
     assert_depths(imported(tmp_path / "a.npy", tmp_path / "rec"), depth_m(depth_mm()))
+
+
+@pytest.mark.parametrize("form", ["a.npy", "a.npz"])
+def test_columns_first_are_read_block_by_block(tmp_path: Path, form: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    depth = np.array(depth_mm(7), order="F")
+    path = tmp_path / form
+    if form == "a.npy":
+        np.save(path, depth)
+    else:
+        np.savez_compressed(path, depth)
+    monkeypatch.setattr(column_major, "BLOCK_BYTES", 3 * depth[0].nbytes + 1)
+    monkeypatch.setattr(column_major, "_CHUNK_BYTES", 5 * 7 * 2)
+    assert_depths(imported(path, tmp_path / "rec"), depth_m(depth_mm(7)))
+
+
+def saved_large(path: Path, form: str) -> np.ndarray:
+    """100 frames of 320x240 in one of the forms in which an array may come."""
+    depth = np.random.default_rng(0).integers(500, 5000, (100, 240, 320), np.uint16)
+    order = np.array(depth, order="F" if form.startswith("columns") else "C")
+    if form.endswith(".npy"):
+        np.save(path, order)
+    elif form.endswith(".npz"):
+        np.savez_compressed(path, depth=order)
+    else:
+        save = {"plain.mat": save_plain, "deflated.mat": save_deflated, "hdf5.mat": save_hdf5}[form]
+        save(path, depth=rows_first(depth))
+    return depth
+
+
+FORMS = ["rows.npy", "columns.npy", "rows.npz", "columns.npz", "plain.mat", "deflated.mat", "hdf5.mat"]
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_no_array_is_held_whole(tmp_path: Path, form: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    depth = saved_large(tmp_path / form, form)
+    monkeypatch.setattr(column_major, "BLOCK_BYTES", 2_000_000)
+    monkeypatch.setattr(column_major, "_CHUNK_BYTES", 500_000)
+    tracemalloc.start()
+    try:
+        found = opened(tmp_path / form, Wanted())
+        means = [float(frame.depth.mean()) for frame in found.frames()]
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    np.testing.assert_allclose(means, depth.mean(axis=(1, 2)) / 1000, rtol=1e-5)
+    assert peak < depth.nbytes / 2
 
 
 def test_the_only_array_is_the_depth_and_one_of_many_is_named(tmp_path: Path) -> None:
@@ -122,7 +173,17 @@ def save_hdf5(path: Path, **arrays: Any) -> None:
         file.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(124) + b"\x00\x02IM")
 
 
-@pytest.mark.parametrize("save", [lambda path, **arrays: savemat(path, arrays), save_hdf5])
+def save_plain(path: Path, **arrays: Any) -> None:
+    """A MATLAB file of version 6."""
+    savemat(path, arrays)
+
+
+def save_deflated(path: Path, **arrays: Any) -> None:
+    """A MATLAB file of version 7."""
+    savemat(path, arrays, do_compression=True)
+
+
+@pytest.mark.parametrize("save", [save_plain, save_deflated, save_hdf5])
 def test_a_matlab_file_of_either_kind(tmp_path: Path, save: Any) -> None:
     save(tmp_path / "a.mat", depth=rows_first(depth_mm()), fx=300.0, fy=310.0, cx=3.5, cy=2.0, timestamps=TIMES)
     recording = imported(tmp_path / "a.mat", tmp_path / "rec", known=Calibration())
@@ -131,7 +192,7 @@ def test_a_matlab_file_of_either_kind(tmp_path: Path, save: Any) -> None:
     assert recording.metadata.timestamps == TIMES
 
 
-@pytest.mark.parametrize("save", [lambda path, **arrays: savemat(path, arrays), save_hdf5])
+@pytest.mark.parametrize("save", [save_plain, save_deflated, save_hdf5])
 def test_a_single_matlab_image_with_a_matrix(tmp_path: Path, save: Any) -> None:
     save(tmp_path / "a.mat", depth=depth_mm()[0], K=K)
     recording = imported(tmp_path / "a.mat", tmp_path / "rec", known=Calibration(fps=5.0))
@@ -145,6 +206,41 @@ def test_no_matlab_file_is_refused(tmp_path: Path) -> None:
         assert "a.mat: expected a MATLAB file" in refusal(tmp_path / "a.mat", tmp_path / "rec")
     savemat(tmp_path / "b.mat", {"depth": np.ones((2, 2, 2, 2))})
     assert "b.mat: expected depth of shape" in refusal(tmp_path / "b.mat", tmp_path / "rec")
+
+
+def test_numbers_that_lie_smaller_than_they_are_meant(tmp_path: Path) -> None:
+    """MATLAB writes whole numbers of class double as 16-bit ones; their class says that they are metres."""
+    save_plain(tmp_path / "a.mat", depth=np.array([[3, 4, 0], [5, 6, 7]], np.uint16))
+    content = bytearray((tmp_path / "a.mat").read_bytes())
+    (flags,) = struct.unpack_from("<I", content, 144)
+    struct.pack_into("<I", content, 144, flags & ~255 | 6)
+    (tmp_path / "a.mat").write_bytes(content)
+    expected = np.array([[[3, 4, np.nan], [5, 6, 7]]], np.float32)
+    assert_depths(imported(tmp_path / "a.mat", tmp_path / "rec", known=KNOWN), expected)
+
+
+def test_a_matlab_file_of_the_other_byte_order(tmp_path: Path) -> None:
+    depth = rows_first(depth_mm())
+    elements = [
+        struct.pack(">4I", 6, 8, 11, 0),
+        struct.pack(">2I3iI", 5, 12, *depth.shape, 0),
+        struct.pack(">2I8s", 1, 5, b"depth"),
+        struct.pack(">2I", 4, depth.nbytes) + depth.astype(">u2").tobytes(order="F"),
+    ]
+    array = b"".join(elements)
+    head = b"MATLAB 5.0 MAT-file".ljust(124) + b"\x01\x00MI"
+    (tmp_path / "a.mat").write_bytes(head + struct.pack(">2I", 14, len(array)) + array)
+    assert_depths(imported(tmp_path / "a.mat", tmp_path / "rec"), depth_m(depth_mm()))
+
+
+def test_an_old_matlab_file_holds_one_image(tmp_path: Path) -> None:
+    savemat(tmp_path / "a.mat", {"depth": depth_m(depth_mm())[0].astype(np.float64)}, format="4")
+    assert_depths(imported(tmp_path / "a.mat", tmp_path / "rec"), depth_m(depth_mm())[:1])
+
+
+def test_complex_numbers_are_no_depth(tmp_path: Path) -> None:
+    save_plain(tmp_path / "a.mat", depth=np.full((2, 3), 1j))
+    assert "no real numbers" in refusal(tmp_path / "a.mat", tmp_path / "rec")
 
 
 def test_a_truncated_matlab_file_is_refused(tmp_path: Path) -> None:

@@ -57,7 +57,7 @@ def test_the_floor_goes_and_the_box_stays(camera: Camera, wobble_m: float) -> No
     ground = ground_of(source_of(depths), camera, up_is_known=False)
     assert ground.distance_m == pytest.approx(camera.position[2], abs=0.05)
     for depth, thing in zip(depths, boxes, strict=True):
-        left = np.isfinite(ground.without(depth))
+        left = np.isfinite(depth) & ~ground.covers(depth)
         assert left[thing].mean() > 0.97
         assert left[~thing].mean() < 0.01
 
@@ -72,9 +72,9 @@ def test_what_lies_below_the_ground_goes_too_and_nothing_stays_nothing() -> None
     depths, _ = world(CEILING, wobble_m=0.0)
     ground = ground_of(source_of(depths), CEILING, up_is_known=False)
     image = np.full((60, 80), 3.9, np.float32)
-    assert not np.isfinite(ground.without(image)).any()
-    assert not np.isfinite(ground.without(np.full((60, 80), np.nan, np.float32))).any()
-    assert np.isfinite(ground.without(np.full((60, 80), 2.0, np.float32))).all()
+    assert ground.covers(image).all()
+    assert not ground.covers(np.full((60, 80), np.nan, np.float32)).any()
+    assert not ground.covers(np.full((60, 80), 2.0, np.float32)).any()
 
 
 def test_no_plane_or_no_return_is_refused() -> None:
@@ -89,8 +89,11 @@ def test_the_ground_is_left_out_on_import(tmp_path: Path) -> None:
     depths, boxes = world(CEILING, wobble_m=0.06)
     np.save(tmp_path / "depth.npy", depths)
     known = Calibration(fx=80.0, fy=80.0, cx=40.0, cy=30.0, pixel_centre=0.5, fps=10.0)
-    made = treated(tmp_path / "depth.npy", tmp_path / "rec", Treatment(remove_ground=True), known=known)
-    assert made.ground is not None
-    assert made.ground.share > 0.7
-    for frame, thing in zip(load_recording(tmp_path / "rec").frames, boxes, strict=True):
+    treated(tmp_path / "depth.npy", tmp_path / "rec", Treatment(remove_ground=True), known=known)
+    recording = load_recording(tmp_path / "rec")
+    (removed,) = recording.metadata.removed or ()
+    assert removed.what == "ground"
+    assert removed.distance_m == pytest.approx(3.3, abs=0.05)
+    assert removed.share == pytest.approx(1 - boxes.sum() / np.isfinite(depths).sum(), abs=0.02)
+    for frame, thing in zip(recording.frames, boxes, strict=True):
         assert (frame.seen == thing).mean() > 0.98

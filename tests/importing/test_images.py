@@ -1,5 +1,6 @@
 """Depth images from elsewhere become a recording, or one line that says why not."""
 
+import contextlib
 from pathlib import Path
 
 import cv2
@@ -9,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from imports import KNOWN, assert_depths, depth_m, depth_mm, imported, refusal
+from PIL import Image
 
 from importing.calibration import Calibration
 from importing.images import depth_image, mask_image
@@ -51,6 +53,53 @@ def test_depth_becomes_metres_and_zero_becomes_nothing(source: Path, tmp_path: P
     assert recording.fps == 15.0
     assert recording.frames[0].labels is None
     assert recording.metadata.name == "rec"
+
+
+@pytest.mark.parametrize("suffix", [".png", ".tif", ".pgm", ".exr"])
+def test_damage_anywhere_is_one_line_or_harmless(
+    suffix: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """Readers in C print what they find wrong; nothing of that may reach the terminal."""
+    generator = np.random.default_rng(0)
+    path = tmp_path / f"a{suffix}"
+    numbers = generator.integers(500, 5000, (30, 40), np.uint16)
+    if suffix == ".exr":
+        OpenEXR.File({}, {"Z": numbers.astype(np.float32)}).write(str(path))
+    else:
+        write(path, numbers)
+    whole = path.read_bytes()
+    for _ in range(60):
+        content = bytearray(whole[: generator.integers(1, len(whole) + 1)])
+        for place in generator.integers(0, min(len(content), 400 if suffix == ".exr" else 60), 2):
+            content[place] ^= int(generator.integers(256))
+        path.write_bytes(content)
+        with contextlib.suppress(InputError):
+            depth_image(path)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_a_palette_of_masks_gives_its_places(tmp_path: Path) -> None:
+    image = Image.fromarray(np.array([[0, 3], [7, 0]], np.uint8), mode="P")
+    image.putpalette(bytes(range(256)) * 3)
+    image.save(tmp_path / "mask.png")
+    np.testing.assert_array_equal(mask_image(tmp_path / "mask.png"), [[0, 3], [7, 0]])
+
+
+def test_two_series_in_a_folder_are_a_choice(source: Path, tmp_path: Path) -> None:
+    message = refusal(source, tmp_path / "rec")
+    assert (
+        "one series of depth images, found depth_*.png and mask_*.png: say which by --pattern 'depth_*.png'" in message
+    )
+
+
+def test_names_of_their_own_are_one_series(tmp_path: Path) -> None:
+    for name in ("a1", "b7", "c", "d1"):
+        write(tmp_path / f"{name}.png", millimetres(300))
+    assert imported(tmp_path, tmp_path / "rec").metadata.frames == 4
+
+
+def test_a_folder_of_folders_names_one(source: Path, tmp_path: Path) -> None:
+    assert f"found none but folders: import one of them, such as {source}" in refusal(tmp_path, tmp_path / "rec")
 
 
 def test_frames_follow_the_numbers_in_their_names(source: Path, tmp_path: Path) -> None:
@@ -141,7 +190,7 @@ def test_a_folder_that_is_none_is_named(source: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize("content", [b"", b"hello", b"\x89PNG\r\n\x1a\n"])
 def test_a_damaged_image_is_named(source: Path, tmp_path: Path, content: bytes) -> None:
     (source / "depth_7.png").write_bytes(content)
-    assert "depth_7.png: expected an image, but it cannot be read" in refusal(source, tmp_path / "rec", pattern=PATTERN)
+    assert "depth_7.png: expected a PNG, but it cannot be read" in refusal(source, tmp_path / "rec", pattern=PATTERN)
 
 
 def test_a_truncated_image_is_named(source: Path, tmp_path: Path) -> None:
@@ -149,7 +198,7 @@ def test_a_truncated_image_is_named(source: Path, tmp_path: Path) -> None:
         write(source / f"depth_{number}.png", np.random.default_rng(0).integers(1, 60000, (200, 300), np.uint16))
     content = (source / "depth_7.png").read_bytes()
     (source / "depth_7.png").write_bytes(content[: len(content) // 2])
-    assert "depth_7.png: expected an image, but it cannot be read" in refusal(source, tmp_path / "rec", pattern=PATTERN)
+    assert "depth_7.png: expected a PNG, but it cannot be read" in refusal(source, tmp_path / "rec", pattern=PATTERN)
 
 
 def test_a_colour_image_is_no_depth(source: Path, tmp_path: Path) -> None:

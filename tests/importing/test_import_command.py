@@ -1,12 +1,16 @@
 """`unocclude import` from the outside: options reach the recording, and every refusal is one line."""
 
 import json
+import shutil
 from pathlib import Path
+from types import SimpleNamespace
 
 import cv2
 import numpy as np
 import pytest
-from imports import FRAMES, assert_depths, depth_m, depth_mm
+from bag_files import TOPIC, new_bag
+from bag_files import images as bag_images
+from imports import FRAMES, TIMES, assert_depths, depth_m, depth_mm
 
 import unocclude
 from recording.store import load_recording
@@ -67,6 +71,47 @@ def test_dropped_frames_and_the_ground_are_told(tmp_path: Path, capsys: pytest.C
     assert "1 frames were dropped in the source and are empty" in said
     assert "left out a plane 3.00 m away, 92% of the returns" in said
     assert [int(frame.seen.sum()) for frame in load_recording(tmp_path / "rec").frames] == [100, 100, 0, 100, 100]
+
+
+def test_the_background_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    depth = np.full((12, 30, 40), 3.0, np.float32)
+    for number in range(12):
+        depth[number, 10:20, 3 * number : 3 * number + 6] = 2.0
+    np.savez(tmp_path / "depth.npz", depth=depth, fx=40, fy=40, cx=19.5, cy=14.5, fps=10)
+    assert run("import", tmp_path / "depth.npz", "-o", tmp_path / "rec", "--remove-background") == 0
+    assert "left out the background, 95% of the returns" in capsys.readouterr().err
+    assert [int(frame.seen.sum()) for frame in load_recording(tmp_path / "rec").frames] == [60] * 12
+
+
+def test_a_disk_that_is_too_small_is_one_line_before_anything_is_made(
+    images: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: SimpleNamespace(free=1000))
+    assert run("import", images, "-o", tmp_path / "rec", *FOCAL, "--fps", 5) == 2
+    said = capsys.readouterr().err
+    assert "but 1.0 kB are free: choose another disk, or take fewer frames" in said
+    assert said.count("\n") == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["images"]
+
+
+def test_a_large_recording_is_announced(
+    images: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("recording.space.GIGABYTE", 10)
+    assert run("import", images, "-o", tmp_path / "rec", *FOCAL, "--fps", 5) == 0
+    assert "will be written to" in capsys.readouterr().err
+    assert run("import", images, "-o", tmp_path / "quiet", *FOCAL, "--fps", 5, "--quiet") == 0
+    assert capsys.readouterr().err == ""
+
+
+def test_a_place_that_is_not_taken_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with new_bag(tmp_path / "ride.bag", "ros1") as bag:
+        bag.add("/tf_static", [(TIMES[0], bag.transforms(TIMES[0], ("base", "depth", (0.0, 0, 1, 0, 0, 0, 1))))])
+        bag.add(TOPIC, bag_images(bag))
+    assert run("import", tmp_path / "ride.bag", "-o", tmp_path / "rec", *FOCAL) == 0
+    assert "if it does, pass --world-frame base" in capsys.readouterr().err
+    assert run("import", tmp_path / "ride.bag", "-o", tmp_path / "rec2", *FOCAL, "--world-frame", "base") == 0
+    assert load_recording(tmp_path / "rec2").camera.position[2] == 1.0
 
 
 WRONG = {

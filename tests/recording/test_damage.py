@@ -150,12 +150,15 @@ def test_bad_input_is_one_line_that_names_the_file(stored: Path, kind: str, capf
     assert capfd.readouterr().err == ""
 
 
-@pytest.mark.parametrize("kind", ["no", "file", "empty"])
-def test_no_recording_at_all_is_named(tmp_path: Path, kind: str) -> None:
+@pytest.mark.parametrize(
+    ("kind", "what"),
+    [("no", "there is no such folder"), ("file", "it is a file"), ("empty", r"it holds no recording\.json")],
+)
+def test_no_recording_at_all_is_named(tmp_path: Path, kind: str, what: str) -> None:
     place = tmp_path / "place"
     if kind == "file":
         place.write_text("hello")
     if kind == "empty":
         place.mkdir()
-    with pytest.raises(InputError, match=r"place: expected a recording, but it holds no recording\.json"):
+    with pytest.raises(InputError, match=f"place: expected a recording, but {what}"):
         load_recording(place)

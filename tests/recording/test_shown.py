@@ -18,7 +18,7 @@ from wellformed import read
 from worlds import recorded, recording_of, small_camera, sphere
 
 from recording.motions import NOISE, OBSERVED, Motions, Representative
-from recording.palette import COLOURS, FAINT, colour_of, colours_of
+from recording.palette import COLOURS, FAINT, colour_of, colours_of, rgb_of
 from recording.recording import Recording
 from recording.store import load_recording, save_recording
 
@@ -195,6 +195,7 @@ def test_no_motions_are_an_empty_table_and_an_empty_plot(axes: Axes) -> None:
 def test_colours_come_by_turns_and_noise_is_faint() -> None:
     assert colours_of(np.array([0, len(COLOURS), NOISE])).tolist() == [COLOURS[0], COLOURS[0], FAINT]
     assert colour_of(1) == COLOURS[1]
+    assert rgb_of(np.array([1, NOISE])).tolist() == [[0xD5, 0x5E, 0x00], [0xBB, 0xBB, 0xBB]]
 
 
 def test_who_draws_nothing_does_not_wait_for_matplotlib() -> None:

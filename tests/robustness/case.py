@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 import unocclude
+from fuzz.samples import BVH, SWEEP
 from recording.exr import write_channels
 
 Damage = Callable[[Path], object]
@@ -29,23 +30,6 @@ WALK = "waypoints = [[-1, 0], [1, 0]]\nspeed = 1.2\n"
 TRAJECTORY = "trajectory = {file = 'walks.txt', id = 3, fps = 10}\n"
 CLIP = "motion = {file = 'clip.bvh'}\n"
 FAMILY = 'name = "tiny"\nframes = 2\n[camera]\nwidth = 24\nheight = 18\n[people]\ncount = 1\n'
-SWEEP = 'name = "few"\nrecordings = ["small"]\n[axes]\neps3 = [1.0, 2.0]\n'
-BVH = """HIERARCHY
-ROOT Hips
-{
-OFFSET 0 0 0
-CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
-End Site
-{
-OFFSET 0 10 0
-}
-}
-MOTION
-Frames: 2
-Frame Time: 0.033
-0 90 0 0 0 0
-0 90 1 0 0 0
-"""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -2,6 +2,7 @@
 
 from case import Case
 from command_cases import COMMANDS
+from import_cases import IMPORTS
 from motions_cases import CORRECTIONS, MOTION, SETTINGS
 from recording_cases import DESCRIPTION, FRAMES, LEFT, TRUTHS
 from scene_cases import FILES, SCENES, SETS
@@ -16,6 +17,7 @@ GROUPS: dict[str, tuple[Case, ...]] = {
     "Scenes": SCENES,
     "Files that scenes name": FILES,
     "Families, data sets, sweeps": SETS,
+    "Imports": IMPORTS,
     "Arguments": COMMANDS,
     "What was left": LEFT,
 }

@@ -99,8 +99,12 @@ def killed(place: Path) -> None:
 
 
 DESCRIPTION = (
-    Case(input="no folder", command="solve {place}/none", says="none: expected a recording, but it holds no recording"),
-    Case(input="a file for the folder", command="solve {place}/small.toml", says="expected a recording, but it holds"),
+    Case(
+        input="no folder", command="solve {place}/none", says="none: expected a recording, but there is no such folder"
+    ),
+    Case(
+        input="a file for the folder", command="solve {place}/small.toml", says="expected a recording, but it is a file"
+    ),
     Case(input="a name of 300 letters", command="solve {place}/" + "x" * 300, says="File name too long"),
     Case(input="zero bytes", command=SOLVE, damage=written(ABOUT, ""), says="recording.json: expected JSON"),
     Case(input="truncated", command=SOLVE, damage=cut(ABOUT, 0.5), says="recording.json: expected JSON"),

@@ -24,6 +24,7 @@ COMMANDS = {
     "simulate": ["simulate", "{place}/small.toml", "-o", "{out}", "--backend", "scalar"],
     "import": ["import", "{place}/images", *FOCAL, "-o", "{out}/images"],
     "solve": ["solve", "{place}/small", "-o", "{out}/motions.parquet", "--no-cache"],
+    "export": ["export", "{place}/small", "--format", "ply", "-o", "{out}/clouds"],
     "generate": [
         "generate",
         "{place}/tiny.toml",
@@ -76,6 +77,7 @@ def known(tmp_path_factory: pytest.TempPathFactory) -> Known:
     (place / "tiny.toml").write_text(FAMILY, encoding="utf-8")
     recording = unocclude.simulate(place / "small.toml", backend="scalar")
     unocclude.save_recording(recording, place / "small")
+    unocclude.save_motions(unocclude.solve(recording), place / "small" / "motions.parquet")
     (place / "images").mkdir()
     for number, frame in enumerate(recording.frames):
         millimetres = np.nan_to_num(1000 * frame.depth).astype(np.uint16)

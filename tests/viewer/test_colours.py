@@ -5,7 +5,7 @@ import pytest
 from known_motions import two_motions
 from worlds import recorded, sphere
 
-from recording.palette import COLOURS, FAINT, TRUTH
+from recording.palette import COLOURS, FAINT, TRUTH, rgb
 from viewer.answer import Answer, Judgement
 from viewer.clouds import Cloud, motion_cloud
 from viewer.colours import (
@@ -15,9 +15,7 @@ from viewer.colours import (
     bare_colours,
     legend,
     motion_colours,
-    numbered,
     pale,
-    rgb,
     scaled,
 )
 from viewer.space import space_of
@@ -48,7 +46,6 @@ def test_motions_and_segments_have_their_numbers_colours_and_noise_is_faint() ->
     assert by_motion[5, 1] == tuple(rgb(COLOURS[1]))
     assert by_segment[5, 1] == tuple(rgb(COLOURS[2]))
     assert by_motion[0, 2] == by_segment[0, 2] == tuple(rgb(FAINT))
-    np.testing.assert_array_equal(numbered(np.array([len(COLOURS)])), numbered(np.array([0])))
 
 
 def test_what_is_not_picked_is_pale() -> None:

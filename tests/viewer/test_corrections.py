@@ -14,10 +14,11 @@ from recording.cache import Cache
 from recording.corrections import Anchor, Correction, Corrections, load_corrections, save_corrections
 from recording.errors import InputError
 from recording.motions import NOISE, Motions
+from recording.palette import rgb
 from recording.recording import Recording
 from viewer.answer import Answer
 from viewer.clouds import motion_cloud
-from viewer.colours import MARK_COLOURS, Shades, motion_colours, rgb
+from viewer.colours import MARK_COLOURS, Shades, motion_colours
 from viewer.hand import Hand, described
 from viewer.keeping import CorrectionsFile
 from viewer.marks import Marks, mark_at, mark_on, segment_frames
@@ -201,11 +202,11 @@ def test_the_papers_completing_knows_no_corrections_and_says_so(session: Session
 def test_pointing_at_something_keeps_the_motions_so_that_the_next_correction_is_quick(
     session: Session, clock: HandClock
 ) -> None:
-    assert session._prepared is None
+    assert session._foresight.prepared is None
     session.pick(None)
-    assert session._prepared is None
+    assert session._foresight.prepared is None
     session.pick(0)
-    assert session._prepared == SETTINGS
+    assert session._foresight.prepared == SETTINGS
     assert session.status == ""
 
 

@@ -4,10 +4,9 @@ import numpy as np
 from known_motions import FRAMES, two_motions
 
 from recording.motions import Motions
-from recording.palette import COLOURS
+from recording.palette import COLOURS, rgb
 from recording.visibility import Visibility
 from viewer.boxes import boxes_of
-from viewer.colours import rgb
 from viewer.lines import (
     CHOSEN,
     OTHER,

@@ -8,9 +8,8 @@ from known_motions import FRAMES, two_motions
 from algorithm.settings import Settings, preset_settings
 from evaluation.completion import CentreErrors
 from evaluation.report.definitions import meaning_of
-from recording.palette import COLOURS
+from recording.palette import COLOURS, rgb
 from viewer.answer import Answer, Judgement, Match
-from viewer.colours import rgb
 from viewer.panels.catalogue import PANELS
 from viewer.panels.motion import numbers_of
 from viewer.panels.solving import DIALS, idle, scores_table

@@ -95,7 +95,7 @@ def test_a_recording_without_motions_can_be_solved(scene: Recording, clock: Hand
     session = Session(scene, None, clock=clock, cache=Cache(folder=own_cache))
     assert session.settings == Settings()
     session.begin()
-    clock.work_until(lambda: session.visibility is not None)
+    clock.work_until(lambda: session.jury.visibility is not None)
     session.solve()
     clock.work_until(lambda: session.answer is not None and session.answer.judgement is not None)
     assert session.opened is session.answer

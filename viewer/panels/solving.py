@@ -7,6 +7,7 @@ from typing import Any, get_args
 
 from algorithm.settings import Preset, Settings, changed_settings
 from algorithm.stages import stage_of
+from evaluation.methods import settings_of
 from evaluation.report.definitions import NOTHING, dotted, meaning_of
 from evaluation.scores import Scores
 from viewer.answer import Answer
@@ -86,7 +87,7 @@ def solving_panel(desk: Desk) -> None:
         solve.visible = session.answer is None
         table.content = scores_table(session.opened, session.answer) + command_text(session)
 
-    desk.when_set(preset, session.want_preset)
+    desk.when_set(preset, lambda name: session.want(settings_of(session.recording, name)))
     for name, slider in sliders.items():
         desk.when_set(slider, partial(_dial, desk, name))
     solve.on_click(lambda _: session.post(session.solve))

@@ -6,7 +6,8 @@ import numpy as np
 from jaxtyping import UInt8
 
 from recording.motions import Representative
-from viewer.colours import numbered, pale
+from recording.palette import rgb_of
+from viewer.colours import pale
 from viewer.lines import presence
 from viewer.panels.desk import Desk
 from viewer.playback import SPEEDS
@@ -77,7 +78,7 @@ def _strip(desk: Desk) -> UInt8[np.ndarray, "row column 3"]:
 def time_strip(curves: Sequence[Representative], frames: int, frame: int) -> UInt8[np.ndarray, "row column 3"]:
     """A row a motion: its colour where it is seen, pale where it was completed, white where it is not; and a cursor."""
     table = presence(curves, frames)
-    colours = numbered(np.array([curve.motion for curve in curves], int))[:, None]
+    colours = rgb_of(np.array([curve.motion for curve in curves], int))[:, None]
     light = pale(colours.reshape(-1, 3), np.ones(len(curves), bool))[:, None]
     row = np.where((table == 2)[..., None], colours, np.where((table == 1)[..., None], light, 255)).astype(np.uint8)
     column = np.arange(_WIDTH_PX) * frames // _WIDTH_PX

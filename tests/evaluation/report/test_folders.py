@@ -131,7 +131,7 @@ def test_counts_alone_have_a_page(tmp_path: Path) -> None:
 
 
 def test_a_folder_of_nothing_known_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="none of recording"):
+    with pytest.raises(InputError, match=r"holds no recording\.json or comparison\.json"):
         report_page(tmp_path)
 
 

@@ -16,8 +16,8 @@ from evaluation.figures.stages import Solved
 from evaluation.holes import hole_rows
 from evaluation.report import cloud
 from evaluation.report.cloud import display_from_world, view_of
-from evaluation.report.definitions import FAMILIES, dotted, meaning_of
-from evaluation.report.page import Card, Cards, Page, Section, Table, View, html_of, write_page
+from evaluation.report.definitions import FAMILIES, NOTHING, dotted, meaning_of
+from evaluation.report.page import Card, Cards, Page, Section, Table, Text, Tiles, View, html_of, write_page
 from evaluation.report.solved import solved_page
 from evaluation.report.worst import unbridged_holes, worst_holes, worst_links, worst_segments
 from evaluation.scores import evidence_of, scores_of
@@ -209,9 +209,34 @@ def test_a_recording_without_truth_has_a_page(what: str, recording: Recording, m
     assert outline_of(page).open == []
 
 
-def test_nothing_found_has_a_page(recording: Recording) -> None:
+def test_a_page_without_truth_speaks_of_none_and_has_no_empty_tile(recording: Recording, motions: Motions) -> None:
+    page = solved_page(stripped(recording), motions)
+    (tiles,) = section(page, "summary").blocks
+    assert isinstance(tiles, Tiles)
+    assert {tile.name: tile.value for tile in tiles.items}["motions"] == "2"
+    assert all(tile.value != NOTHING for tile in tiles.items)
+    text = html_of(page).partition("<script>")[0]  # Scripts are those of all pages.
+    assert re.findall("[^.<>]*truth[^.<>]*", text) == [
+        "The recording holds no truth to judge by: these are the links that the solver is least sure of",
+        "The recording holds no truth: these are the numbers that need none",
+    ]
+
+
+def test_where_nothing_failed_the_page_says_so_first(page: Page, recording: Recording, motions: Motions) -> None:
+    first = section(page, "failures").blocks[0]
+    assert isinstance(first, Text)
+    assert first.words.startswith("No failures: ")
+    links = (Link(before=10, after=21, confidence=0.4),)
+    wrong = section(solved_page(recording, replace(motions, links=links)), "failures")
+    assert "1 of 1 links wrong" in html_of(Page(title="", subtitle="", sections=(wrong,)))
+    titles = [block.title for block in wrong.blocks if isinstance(block, Cards)]
+    assert titles == ["Worst links", "Segments, none of which mixes objects"]
+
+
+def test_nothing_found_has_a_page_that_says_why(recording: Recording) -> None:
     page = solved_page(recording, empty())
     assert "2 of 2 objects not found" in html_of(page)
+    assert "No motions: what moves is too small" in html_of(page)
 
 
 def test_settings_that_differ_from_the_presets_are_told(recording: Recording, motions: Motions) -> None:

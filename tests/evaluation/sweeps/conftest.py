@@ -4,29 +4,12 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from small_scenes import box, small_scene, walker
 
 from recording.cluster import Client, cluster
 from simulator.simulate import prepared, write_simulation
 
-SCENE = """
-name = "small"
-frames = 14
-fps = 15
-[camera]
-width = 64
-height = 48
-position = [0, -4, 1.2]
-look_at = [0, 0, 1]
-horizontal_fov_deg = 60
-[[people]]
-body = "man"
-waypoints = [[-1.2, 0], [1.2, 0]]
-speed = 1.4
-[[obstacles]]
-shape = "box"
-size = [0.5, 0.1, 2.4]
-position = [0, -1.0, 0]
-"""
+SCENE = small_scene(walker(begin_m=-1.2, end_m=1.2), box(width_m=0.5, height_m=2.4, before_m=1), frames=14)
 
 
 @pytest.fixture(scope="session")
