@@ -11,7 +11,10 @@ READY := $(VENV)/.ready
 DEMO := demo
 WORKERS ?= 2
 MINUTES ?= 10
-READERS ?= scene family sweep settings corrections recording manifest frame xray truth motions bvh walks
+READERS ?= scene family sweep settings corrections recording manifest frame xray truth motions bvh walks \
+  png tiff pgm exr npz npy npy_points mat mat73 ply pcd xyz ros1 mcap db3 bag_metadata \
+  camera camera_yaml camera_storage camera_xml extrinsics extrinsics_text extrinsics_npy tum_times tum_places \
+  stages journal
 
 .PHONY: demo test soak fuzz check format clean
 

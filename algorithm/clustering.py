@@ -31,11 +31,14 @@ def clustered(trajectories: Trajectories, settings: Settings, spacing_m: float, 
         if settings.clustering == "spectral":
             affinity = affinity_matrix(pairs, similarity(distance, eps3=settings.eps3), count=sampled.count)
             label = spectral_segments(
-                affinity, smallest=settings.eps4, most=settings.most_segments, count=settings.segment_count
+                affinity,
+                smallest=settings.fewest_trajectories,
+                most=settings.most_segments,
+                count=settings.segment_count,
             )
         else:
             label = merged_segments(pairs, distance, count=sampled.count, k=settings.merging_k)
-        label = without_small(label, smallest=settings.eps4)
+        label = without_small(label, smallest=settings.fewest_trajectories)
         return followers(trajectories, sample, label, radius_m=settings.neighbour_radius_m)
 
 

@@ -166,5 +166,5 @@ def _without_few(
     if not len(motion):
         return motion
     count = np.bincount(motion[segments[segments >= 0]], minlength=int(motion.max()) + 1)
-    kept = count >= settings.eps4
+    kept = count >= settings.fewest_trajectories
     return np.where(kept, np.cumsum(kept) - 1, -1)[motion]

@@ -1,7 +1,7 @@
 """What solving a recording will take, from a few of its frames."""
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,9 +23,14 @@ _FEWEST_AT_HAND = 8
 _PASSES = 6
 """How often a depth image is read that does not stay in memory."""
 _BASE_BYTES = 5e8
-_BYTES_FOLLOWED, _BYTES_KEPT = 25.0, 300.0
+_BYTES_A_PIXEL = 400.0
+"""Of a picture, while what stands still is recognised."""
+_BYTES_FLOWING = 2 * 16.0 * 2 * 64
+"""Of the moving points of a frame: the flows of a part, and as much again to keep it."""
+_BYTES_FOLLOWED, _BYTES_KEPT = 30.0, 300.0
 """Of each moving point in each frame: while it is followed, and if it is kept."""
-_FARTHEST_APART_PX = 10
+_FARTHEST_APART_PX = 4
+"""Of fewer points, what is small is lost."""
 _SECONDS_A_POINT = 8e-6
 """Of all steps after the flow, on one core."""
 
@@ -38,23 +43,21 @@ class Estimate:
     """Moving points in all frames together."""
     seconds: float
     """On this machine, as busy as it is now, if no stage is in the cache."""
-    images_bytes: float
-    """Of the depth images that stay in memory."""
+    least_bytes: float
+    """Of the libraries, of the depth images and of the flows that are in memory at a time."""
     points_apart_px: int
     """As the settings have it."""
 
     @property
     def memory_bytes(self) -> float:
         """The largest that it will need at a time."""
-        return self._memory_bytes(self.points_apart_px)
+        return self.least_bytes + self.points * (_BYTES_FOLLOWED + _BYTES_KEPT / self.points_apart_px**2)
 
-    def points_apart_within(self, memory_bytes: int) -> int | None:
-        """How far apart points must begin, pixels, so that so much memory is enough; None where nothing helps."""
-        every = range(self.points_apart_px, _FARTHEST_APART_PX + 1)
-        return next((apart for apart in every if self._memory_bytes(apart) <= memory_bytes), None)
-
-    def _memory_bytes(self, apart_px: int) -> float:
-        return _BASE_BYTES + self.images_bytes + self.points * (_BYTES_FOLLOWED + _BYTES_KEPT / apart_px**2)
+    def within(self, memory_bytes: int) -> "Estimate | None":
+        """The same with points so far apart that so much memory is enough; None where nothing helps."""
+        every = range(self.points_apart_px, max(self.points_apart_px, _FARTHEST_APART_PX) + 1)
+        fewer = (replace(self, points_apart_px=apart) for apart in every)
+        return next((one for one in fewer if one.memory_bytes <= memory_bytes), None)
 
 
 def is_long(metadata: Metadata) -> bool:
@@ -88,7 +91,9 @@ def estimated(recording: Recording, settings: Settings | None = None, *, memory_
     return Estimate(
         points=points,
         seconds=about.frames * (flow_seconds + passes * read_seconds) + _SECONDS_A_POINT * points,
-        images_bytes=2 * 4.0 * room * about.width * about.height,
+        least_bytes=_BASE_BYTES
+        + (2 * 4.0 * room + _BYTES_A_PIXEL) * about.width * about.height
+        + _BYTES_FLOWING * points / about.frames,
         points_apart_px=settings.points_apart_px,
     )
 

@@ -55,10 +55,12 @@ class FlowParts:
 
     def _made(self, pairs: range, key: str) -> Iterator[ThereAndBack]:
         watch, begun = Stopwatch(), FlowsBegun(self.moving[0].shape)
+        wanted = self.cache is not None or self.told is not nobody
         for a in pairs:
             with watch.stage("flow"):
                 both = self.flows(a, a + 1)
-            begun.add(both, (self.moving[a], self.moving[a + 1]))
+            if wanted:
+                begun.add(both, (self.moving[a], self.moving[a + 1]))
             yield both
         seconds = {"flow": watch.seconds["flow"], "total": watch.seconds["flow"]}
         self.watch.seconds["flow"] += seconds["flow"]

@@ -5,6 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Float32
 
+from recording.over_time import spread_numbers
+
 _FRAMES = 12
 _BINOMIAL = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
 """The fourth difference: what is smooth vanishes in it, noise of a standard deviation s has sqrt(70) s."""
@@ -19,9 +21,8 @@ def surface_noise_m(depths: Sequence[Float32[np.ndarray, "row column"]]) -> floa
     It is that of their fourth differences along rows and columns, over up to 12 frames spread over the recording.
     Above 5 cm it says too little, for differences of a metre are edges.
     """
-    chosen = np.unique(np.linspace(0, len(depths) - 1, _FRAMES).round().astype(int))
     found = [np.zeros(0)]
-    for number in chosen.tolist():
+    for number in spread_numbers(len(depths), _FRAMES):
         for depth in (depths[number], depths[number].T):
             if depth.shape[1] >= len(_BINOMIAL):
                 windows = np.lib.stride_tricks.sliding_window_view(depth, len(_BINOMIAL), axis=1)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Bool, Float32, Int32, Int64
@@ -59,10 +60,12 @@ def sorted_trajectories(
 
 def _parts(history: Sequence[Observations]) -> Iterator[list[Observations]]:
     """The history of some trajectories after the other; one part at least."""
-    length = np.bincount(np.concatenate([points.number for points in history]))
-    part = np.cumsum(length) // _ROWS_AT_ONCE
-    for number in range(int(part.max(initial=0)) + 1):
-        yield [points.chosen(part[points.number] == number) for points in history]
+    length = np.zeros(1 + max((int(points.number.max(initial=-1)) for points in history), default=-1), np.int64)
+    for points in history:
+        length[points.number] += 1  # None stands twice in a frame.
+    ends = np.flatnonzero(np.diff(np.cumsum(length) // _ROWS_AT_ONCE, append=-1)) + 1 if len(length) else [0]
+    for first, end in pairwise([0, *ends]):
+        yield [points.chosen((points.number >= first) & (points.number < end)) for points in history]
 
 
 def _sorted(history: Sequence[Observations], camera: Camera) -> Trajectories:

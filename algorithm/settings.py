@@ -128,6 +128,11 @@ class Settings(Frozen):
     longest_hole_seconds: Positive = 3.0
     """Seconds: a longer hole is not bridged."""
 
+    @property
+    def fewest_trajectories(self) -> float:
+        """Epsilon 4 among the trajectories that are kept (`points_apart_px`)."""
+        return self.eps4 / self.points_apart_px**2
+
     def _repr_html_(self) -> str:
         """What differs from the preset, and all settings with their meaning, as a notebook shows them."""
         usual = preset_settings(self.preset)

@@ -7,6 +7,7 @@ from jaxtyping import Float32
 from scipy.spatial import cKDTree
 
 from recording.camera import Camera
+from recording.over_time import spread_numbers
 
 _FRAMES = 12
 
@@ -16,9 +17,8 @@ def mean_point_spacing(depths: Sequence[Float32[np.ndarray, "row column"]], *, c
 
     Over up to twelve frames spread over the recording. NaN where no frame has two returns.
     """
-    chosen = np.unique(np.linspace(0, len(depths) - 1, _FRAMES).round().astype(int))
     nearest = []
-    for number in chosen.tolist():
+    for number in spread_numbers(len(depths), _FRAMES):
         points = camera.world_points(depths[number])
         points = points[np.isfinite(depths[number])]
         if len(points) > 1:

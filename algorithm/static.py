@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Bool, Float32, Int
 
 from algorithm.at_hand import AtHand
-from recording.over_time import quantile_over_time, spread_numbers, wobble_m
+from recording.over_time import quantile_over_time, spread_numbers, stacked, wobble_m
 
 _FRAMES_FOR_MEDIAN = 61
 _SHARE, _SIGMAS = 0.75, 1.1503
@@ -141,9 +141,9 @@ def _flickers(presence: _Presence) -> Bool[np.ndarray, "row column"]:
 
 def usual_depth(depths: Sequence[Float32[np.ndarray, "row column"]]) -> Float32[np.ndarray, "row column"]:
     """The median of every pixel's returns over up to 61 frames spread over the recording; NaN without any."""
-    return quantile_over_time(
-        np.stack([depths[number] for number in spread_numbers(len(depths), _FRAMES_FOR_MEDIAN)]), 0.5
-    )
+    chosen = spread_numbers(len(depths), _FRAMES_FOR_MEDIAN)
+    some = stacked((depths[number] for number in chosen), count=len(chosen), shape=depths[0].shape)
+    return quantile_over_time(some, 0.5)
 
 
 def noise_of_pixels(
@@ -170,8 +170,7 @@ def noise_in_time(depths: Sequence[Float32[np.ndarray, "row column"]]) -> Float3
     """
     if len(depths) < 3:
         return np.zeros(depths[0].shape, np.float32)
-    bends = [
-        np.abs(depths[number] - 2 * depths[number + 1] + depths[number + 2])
-        for number in spread_numbers(len(depths) - 2, _FRAMES_FOR_MEDIAN)
-    ]
-    return np.nan_to_num(quantile_over_time(np.stack(bends), _SHARE) / np.float32(_SIGMAS * _SECOND))
+    chosen = spread_numbers(len(depths) - 2, _FRAMES_FOR_MEDIAN)
+    bends = (np.abs(depths[number] - 2 * depths[number + 1] + depths[number + 2]) for number in chosen)
+    every = stacked(bends, count=len(chosen), shape=depths[0].shape)
+    return np.nan_to_num(quantile_over_time(every, _SHARE) / np.float32(_SIGMAS * _SECOND))

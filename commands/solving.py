@@ -9,7 +9,7 @@ from cyclopts import Parameter
 from distributed.system import MEMORY_LIMIT
 from pydantic import ByteSize, TypeAdapter, ValidationError
 
-from algorithm.estimate import estimated, is_long
+from algorithm.estimate import Estimate, estimated, is_long
 from algorithm.settings import Settings, changed_settings, settings_from_file
 from algorithm.staged import solve
 from commands.common import CACHING, WRITING, Caching, Common, Writing
@@ -23,6 +23,7 @@ from recording.parquet import save_motions
 from recording.recording import Recording
 from recording.store import load_recording
 
+MEGABYTE = 10**6
 SETTINGS_HELP = "\n".join(
     ["Settings for `--set` and `--settings`, with the values of the preset `default`:", ""]
     + [f"- `{name}` = {field.default}: {field.description}" for name, field in Settings.model_fields.items()]
@@ -58,8 +59,9 @@ def solve_command(
         set_: `KEY=VALUE`, a setting that replaces the others'; may be given several times.
         corrections: TOML file with what was said by hand of segments and links, from `unocclude view` or written by
             hand (docs/corrections.md).
-        max_memory: Such as `4GB`: depth images that do not fit are read when they are needed, and of more points than
-            fit some are followed (`points_apart_px`). By default all that the machine has; what needs more is refused.
+        max_memory: Such as `4GB`, as nearly as can be told before: depth images that do not fit are read when they are
+            needed, and of more points than fit some are kept (`points_apart_px`). By default all that the machine has;
+            what needs more is refused.
     """
     place = output or recording / "motions.parquet"
     if place.exists() and not common.overwrite:
@@ -97,21 +99,26 @@ def _within(memory: int, recording: Recording, settings: Settings, common: Commo
     """
     about, expected = recording.metadata, estimated(recording, settings, memory_bytes=memory)
     size = f"{about.frames:,} frames of {about.width}x{about.height} pixels"
-    takes = f"about {expected.seconds / 60:.1f} minutes and {expected.memory_bytes / GIGABYTE:.1f} GB of memory"
-    common.say(f"{size}, {expected.points / about.frames:,.0f} moving points in each: {takes}")
-    apart, limit = expected.points_apart_within(memory), f"{memory / GIGABYTE:.2g} GB"
-    if apart == settings.points_apart_px:
-        return settings
-    if apart is None or not thin:
-        remedy = (
-            "make it shorter or its pictures smaller" if apart is None else f"--max-memory {limit} takes fewer points"
-        )
-        needed = f"{expected.memory_bytes / GIGABYTE:.1f} GB"
+    points = f"{expected.points / about.frames:,.0f} moving points in each"
+    common.say(f"{size}, {points}: about {expected.seconds / 60:.1f} minutes and {_gigabytes(expected)} of memory")
+    fitting, limit = expected.within(memory), f"{memory / GIGABYTE:.2f} GB"
+    if fitting is None or not (thin or fitting == expected):
+        remedy = "make it shorter or its pictures smaller"
+        if fitting is not None:
+            remedy += f", or pass --max-memory {int(memory / MEGABYTE)}MB to keep fewer points"
+        name = about.name or "recording"
         raise InputError(
-            f"{about.name or 'recording'}: expected to need {limit} of memory at most, got {needed}: {remedy}"
+            f"{name}: expected to need {limit} of memory at most, got about {_gigabytes(expected)}: {remedy}"
         )
-    common.say(f"to need no more than {limit}: one point in {apart**2} is followed (points_apart_px = {apart})")
+    if fitting == expected:
+        return settings
+    apart = fitting.points_apart_px
+    common.say(f"one point in {apart**2} is kept (points_apart_px = {apart}): about {_gigabytes(fitting)} of memory")
     return changed_settings(settings, {"points_apart_px": apart}, source="--max-memory")
+
+
+def _gigabytes(expected: Estimate) -> str:
+    return f"{expected.memory_bytes / GIGABYTE:.1f} GB"
 
 
 def _bytes(text: str) -> int:

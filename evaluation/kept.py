@@ -71,7 +71,7 @@ class Kept:
         settings = settings_of(recording, preset)
         place = self.motions_path(scene, preset)
         maker, code = place.with_suffix(".code"), code_digest()
-        if place.is_file() and maker.is_file() and maker.read_text(encoding="utf-8") == code:
+        if place.is_file() and maker.is_file() and maker.read_bytes() == code.encode():
             found = load_motions(place)
             if _made_so(found, recording, settings):
                 return found

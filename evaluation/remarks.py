@@ -5,6 +5,7 @@ import numpy as np
 from algorithm.settings import Settings
 from algorithm.static import background
 from recording.motions import Making, Motions
+from recording.over_time import spread_numbers
 from recording.recording import Recording
 
 _FEWEST_FRAMES = 3
@@ -27,7 +28,8 @@ def why_no_motions(recording: Recording, motions: Motions) -> str:
     if tracks:
         least = motions.making.settings.get("eps4")
         enough = "enough" if least is None else f"eps4 = {least:g}"
-        return f"{tracks} trajectories were followed, but no motion has {enough} of them"
+        were = "trajectory was" if tracks == 1 else "trajectories were"
+        return f"{tracks} {were} followed, but no motion has {enough} of them"
     if frames < _FEWEST_FRAMES:
         return f"{frames} frame{'s' * (frames > 1)}, too few to follow anything"
     share = _moving_share(recording)
@@ -46,8 +48,7 @@ def count_by_hand(making: Making) -> int:
 def _moving_share(recording: Recording) -> float | None:
     """The share of the returns, in frames spread over the recording, that do not stand still; None without returns."""
     frames = recording.metadata.frames
-    numbers = np.unique(np.linspace(0, frames - 1, min(frames, _LOOKED_AT)).round().astype(int)).tolist()
-    depths = [recording.frames[number].depth for number in numbers]
+    depths = [recording.frames[number].depth for number in spread_numbers(frames, _LOOKED_AT)]
     still = background(depths, tolerance_m=Settings().static_tolerance_m)
     returns = sum(int(np.isfinite(depth).sum()) for depth in depths)
     return sum(int(still.moving(depth).sum()) for depth in depths) / returns if returns else None

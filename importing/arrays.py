@@ -132,7 +132,7 @@ def times_in(arrays: Mapping[str, np.ndarray], frames: int, *, source: Path) -> 
 def three_sides(shape: tuple[int, ...], *, source: Path) -> tuple[int, int, int]:
     """Frames, rows and columns; a single image is one frame."""
     sides = (1, *shape) if len(shape) == 2 else shape
-    if len(sides) != 3 or 0 in sides:
+    if len(sides) != 3 or min(sides) < 1:
         raise InputError(f"{source}: expected depth of shape (frame, row, column), got {shape}")
     return sides[0], sides[1], sides[2]
 

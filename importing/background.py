@@ -81,7 +81,7 @@ def _level_frames(source: DepthSource) -> Float32[np.ndarray, "frame row column"
     wanted = set(spread_numbers(source.count, _FRAMES))
     frames = tracked(source.frames(), "looking for the background", total=source.count)
     depths = np.stack([frame.depth for number, frame in enumerate(frames) if number in wanted])
-    usual = np.concatenate([quantile_over_time(depths[:, rows], 0.5) for rows in _bands(depths.shape[1])])
+    usual = quantile_over_time(depths, 0.5)
     for number, depth in enumerate(depths):
         depths[number] = depth - np.float32(wobble_m(depth - usual, least=_LEAST_PIXELS))
     return depths

@@ -19,7 +19,7 @@ def frames_across(
     """The frames of an array (frame, row, column) whose bytes count frames first, then rows, then columns.
 
     A frame's numbers are strewn over all of the file. So as many frames as fit into 256 MB are picked out of one
-    reading from beginning to end, then the next ones out of another: an array of 2 GB is read ten times.
+    reading from beginning to end, then the next ones out of another: an array of 2 GB is read eight times.
     """
     count, height, width = shape
     pixels = height * width

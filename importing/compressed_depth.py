@@ -21,7 +21,7 @@ _HEAD = struct.Struct("<iff")
 def unpacked(format_: str, data: np.ndarray, *, source: str) -> np.ndarray:
     """The numbers of a message: whole ones of 16UC1, metres of 32FC1, 0 for no return."""
     encoding, _, packing = (part.strip() for part in format_.partition(";"))
-    if MARK not in packing or packing not in (MARK, f"{MARK} png"):
+    if packing not in (MARK, f"{MARK} png"):
         raise InputError(
             f"{source}: expected '16UC1; {MARK} png' or '32FC1; {MARK} png', got {format_!r}: import the topic of raw "
             "images, or record with the publisher's format set to png"

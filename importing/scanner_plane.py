@@ -46,8 +46,9 @@ def scanner_camera(
     advice = "pass the scanner's own --fx, --fy, --cx, --cy and --size, and the nearest point of a pixel is taken"
     if not side > 0:
         raise InputError(f"{source}: expected points on rays of their own, but two of a frame lie on one ray: {advice}")
-    size = [int(np.floor((high - low) / side)) + 2 for low, high in zip(extent.low, extent.high, strict=True)]
-    if size[0] * size[1] > LARGEST_PIXELS:
+    with np.errstate(over="ignore"):  # Two points may lie on rays as near as numbers can.
+        size = [np.floor((high - low) / side) + 2 for low, high in zip(extent.low, extent.high, strict=True)]
+    if not size[0] * size[1] <= LARGEST_PIXELS:
         raise InputError(
             f"{source}: expected points on rays of their own, but two of a frame lie so nearly on one that the picture "
             f"would need {size[0]:.2g}x{size[1]:.2g} pixels: {advice}"
@@ -57,8 +58,8 @@ def scanner_camera(
         for low, values in zip(extent.low, extent.first.T, strict=True)
     )
     return Camera(
-        width=size[0],
-        height=size[1],
+        width=int(size[0]),
+        height=int(size[1]),
         fx=1 / side,
         fy=1 / side,
         cx=-column,

@@ -1,6 +1,7 @@
 """Where a bag's camera stands, by the transforms between named frames that ROS keeps in `/tf_static` and `/tf`."""
 
-from collections.abc import Iterator
+from array import array
+from collections.abc import Iterator, MutableSequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -26,15 +27,17 @@ class _Edge:
     """Where a frame is in its parent."""
 
     parent: str
-    times: list[float] = field(default_factory=list)
-    poses: list[list[float]] = field(default_factory=list)
-    """x, y, z and a quaternion x, y, z, w."""
+    other_parent: str | None = None
+    """A second one, which no frame may have."""
+    times: MutableSequence[float] = field(default_factory=lambda: array("d"))
+    poses: MutableSequence[float] = field(default_factory=lambda: array("d"))
+    """x, y, z and a quaternion x, y, z, w of each time."""
 
     def at(self, times: Float[np.ndarray, "moment"], *, source: str) -> Poses:
         """The latest pose at each time; the first one before there is any."""
         order = np.argsort(self.times, kind="stable")
         latest = np.searchsorted(np.array(self.times)[order], times, side="right") - 1
-        poses = np.array(self.poses)[order][np.maximum(latest, 0)]
+        poses = np.array(self.poses).reshape(-1, 7)[order][np.maximum(latest, 0)]
         lengths = np.linalg.norm(poses[:, 3:], axis=1)
         if not (np.isfinite(poses).all() and np.all(np.abs(lengths - 1) < 0.01)):
             raise InputError(f"{source}: expected finite places and unit quaternions in the transforms")
@@ -47,11 +50,11 @@ def camera_place(reader: Any, frame: str, times: tuple[float, ...], *, wanted: s
     Nothing where the bag has no such frame above the camera: which way is up is not known then. A camera that moves
     while it records is refused.
     """
-    edges = _edges(reader, source)
+    edges = _edges(reader)
     own, fixed = _bare(frame), None if wanted is None else _bare(wanted)
     above = _above(edges, own, source)
     if fixed is None:
-        fixed = next((name for name in reversed(above) if name in FIXED), None)
+        fixed = next((name for name in reversed(above[1:]) if name in FIXED), None)
         if fixed is None:
             if len(above) > 1:
                 note(
@@ -71,15 +74,15 @@ def camera_place(reader: Any, frame: str, times: tuple[float, ...], *, wanted: s
     return placed(still_pose(poses, source=f"{source}, frame {own!r} in {fixed!r}"), source=source)
 
 
-def _edges(reader: Any, source: str) -> dict[str, _Edge]:
+def _edges(reader: Any) -> dict[str, _Edge]:
     """All transforms of the bag, by the frame that each places."""
     edges: dict[str, _Edge] = {}
     for parent, child, time, pose in _transforms(reader):
         edge = edges.setdefault(child, _Edge(parent=parent))
         if edge.parent != parent:
-            raise InputError(f"{source}: expected {child!r} in one frame, got it in {edge.parent!r} and in {parent!r}")
+            edge.other_parent = parent
         edge.times.append(time)
-        edge.poses.append(pose)
+        edge.poses.extend(pose)
     return edges
 
 
@@ -104,8 +107,11 @@ def _transforms(reader: Any) -> Iterator[tuple[str, str, float, list[float]]]:
 def _above(edges: dict[str, _Edge], frame: str, source: str) -> list[str]:
     """A frame, its parent, and so on up to the topmost."""
     names = [frame]
-    while names[-1] in edges:
-        names.append(edges[names[-1]].parent)
+    while edge := edges.get(names[-1]):
+        if edge.other_parent is not None:
+            came = f"it in {edge.parent!r} and in {edge.other_parent!r}"
+            raise InputError(f"{source}: expected {names[-1]!r} in one frame, got {came}")
+        names.append(edge.parent)
         if len(names) > _LONGEST_CHAIN:
             raise InputError(f"{source}: expected transforms that end at one frame, got a circle at {frame!r}")
     return names

@@ -40,9 +40,13 @@ def _listed(source: Path) -> tuple[tuple[float, ...], list[Path]]:
                 f"{source / LIST}: expected a time and a file name, got {' '.join(row)[:60]!r} in line {number}"
             ) from None
         path = source / name
-        if not path.resolve().is_relative_to(source.resolve()):
-            raise InputError(f"{source / LIST}: expected files within the folder, got {name!r} in line {number}")
-        if not path.is_file():
+        try:
+            inside, there = path.resolve().is_relative_to(source.resolve()), path.is_file()
+        except (OSError, RuntimeError, ValueError):  # Too long, links in a circle, or a NUL in it.
+            inside = there = False
+        if not inside:
+            raise InputError(f"{source / LIST}: expected files within the folder, got {name[:60]!r} in line {number}")
+        if not there:
             raise InputError(f"{path} is missing: line {number} of {source / LIST} promises it")
         times.append(stamp)
         images.append(path)

@@ -172,6 +172,7 @@ def _column(place: Path, table: pa.Table, name: str) -> np.ndarray:
 def _source(place: Path, table: pa.Table) -> np.ndarray:
     try:
         names = table.column("source").cast(pa.string())
+        names.validate(full=True)  # Its words may be no UTF-8.
     except pa.ArrowException as error:
         raise InputError(f"{place}: expected column 'source' as words, but {_line(error)}") from None
     found = pc.index_in(names, value_set=pa.array(SOURCES))

@@ -115,6 +115,9 @@ class Recording:
         angle_deg = 2 * np.degrees(np.arctan(about.width / (2 * self.camera.fx)))
         moving = [entry.name for entry in about.objects or () if entry.moving]
         truth = [name for name, known in (("meshes", self.truth), ("X-ray twins", self.xray)) if known is not None]
+        removed = [
+            ("left out", ", ".join(f"{part.what}, {part.share:.0%} of the returns" for part in about.removed or ()))
+        ]
         return [
             ("recording", about.name or "without a name"),
             ("frames", f"{about.frames}, {about.fps:g} a second, {about.frames / about.fps:.1f} s"),
@@ -122,6 +125,7 @@ class Recording:
             ("sensor", str((about.sensor or {}).get("preset", "unknown"))),
             ("moving objects", "unknown" if about.objects is None else f"{len(moving)}: {', '.join(moving)}"),
             ("truth", ", ".join(truth) or "none"),
+            *(removed if about.removed else []),
         ]
 
 

@@ -124,7 +124,7 @@ def test_with_less_memory_fewer_points_are_followed(
     needed = unocclude.estimated(unocclude.load_recording(solved), memory_bytes=10**9).memory_bytes
     fewer = ("-o", tmp_path / "fewer.parquet", "--max-memory", f"{needed - 1000:.0f}B")
     assert run("solve", solved, *fewer, "--set", "eps4=3") == 0
-    assert "one point in 4 is followed" in capsys.readouterr().err
+    assert "one point in 4 is kept" in capsys.readouterr().err
     few, many = unocclude.load_motions(fewer[1]), unocclude.load_motions(solved / "motions.parquet")
     assert 0 < len(few) < len(many) / 2
     assert few.making.settings["points_apart_px"] == 2

@@ -191,11 +191,16 @@ class Session:
         self.status = status
         self.status_changed()
 
+    def _say_spent(self, more: str = "") -> None:
+        """Tell what the answer took, unless another one is being made."""
+        if not self._busy:
+            self.say(", ".join(filter(None, (self._spent, more))))
+
     def _judge(self, answer: Answer | None) -> None:
         if answer is None or self.jury.visibility is None:
-            self.say(self._spent)
+            self._say_spent()
             return
-        self.say(f"{self._spent}, scoring ..." if self._spent else "scoring ...")
+        self._say_spent("scoring ...")
         self.jury.judge(answer, done=partial(self._judged, answer))
 
     def _judged(self, answer: Answer, judgement: Judgement | None) -> None:
@@ -204,7 +209,7 @@ class Session:
             self.opened = better
         if self.answer is answer:
             self.answer = better
-        self.say(self._spent)
+        self._say_spent()
         self.judged()
         self.recoloured()
 

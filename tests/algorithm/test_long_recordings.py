@@ -1,19 +1,22 @@
 """Recordings that do not fit into memory: solved alike, in parts, from where a run was interrupted."""
 
+import tracemalloc
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from worlds import recorded, sphere
 
-from algorithm import flow_parts, observations, staged
+from algorithm import estimate, flow_parts, observations
 from algorithm.at_hand import AtHand
 from algorithm.estimate import estimated, room_for
 from algorithm.flow_parts import FlowParts
 from algorithm.scene_flow import ThereAndBack
 from algorithm.settings import Settings, preset_settings
 from algorithm.staged import solve
+from algorithm.static import background
 from recording.cache import Cache
 from recording.motions import COLUMNS, Motions
 from recording.recording import Recording
@@ -70,7 +73,6 @@ def test_an_interrupted_run_goes_on_where_it_was(
     resumed = solve(recording, cache=cache)
     assert made == [0, 4, -1, 8, 12]
     assert_same(resumed, solve(recording))
-    assert staged.Course(recording=recording, digest=recording.digest(), settings=Settings(), cache=cache).observed()
 
 
 def test_no_more_images_stay_than_there_is_room_for() -> None:
@@ -97,11 +99,35 @@ def test_an_estimate_counts_what_moves(recording: Recording) -> None:
     assert 0.5 * moving < expected.points < 2 * moving
     assert 0 < expected.seconds < 600
     enough = round(expected.memory_bytes)
-    assert expected.points_apart_within(enough + 1) == 1
-    assert expected.points_apart_within(enough - 1) == 2
-    assert expected.points_apart_within(10**6) is None
+    assert expected.within(enough + 1) == expected
+    fewer = expected.within(enough - 1)
+    assert fewer is not None
+    assert fewer.points_apart_px == 2
+    assert fewer.memory_bytes < enough
+    assert expected.within(10**6) is None
+    far = replace(expected, points_apart_px=50)
+    assert far.within(enough) == far
 
 
 def test_an_estimate_of_a_single_frame() -> None:
     one = recorded([sphere(lambda _: (0.1, 0, 1.5), 0.25)], frames=1, moving=[False])
     assert estimated(one, memory_bytes=10**9).seconds >= 0
+
+
+def test_few_points_of_many_are_a_motion_too(recording: Recording) -> None:
+    """Epsilon 4 counts the trajectories among all that there were."""
+    many, few = (solve(recording, Settings(points_apart_px=apart, eps4=300)) for apart in (1, 4))
+    assert len(few.motion_ids) == len(many.motion_ids) == 1
+    assert 0 < len(np.unique(few.trajectory)) < 300 <= len(np.unique(many.trajectory))
+
+
+def test_what_stands_still_is_found_in_the_room_that_the_estimate_leaves() -> None:
+    generator = np.random.default_rng(1)
+    depths = [generator.normal(3.0, 0.01, (120, 160)).astype(np.float32) for _ in range(70)]
+    tracemalloc.start()
+    try:
+        background(depths, tolerance_m=0.03)
+        largest = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert largest < estimate._BYTES_A_PIXEL * depths[0].size

@@ -53,6 +53,12 @@ def test_the_rate_is_the_usual_one() -> None:
         ([0.0, 0.1, 0.1], {}, "expected time stamps that grow, got 0.1 after 0.1 at frame 2"),
         ([0.0, 0.2, 0.1], {}, "expected time stamps that grow, got 0.1 after 0.2 at frame 2"),
         ([0.0, np.nan], {}, "expected time stamps in seconds, got nan"),
+        (
+            [0.0, 3000.0, 6000.0],
+            {},
+            "of 0.001 to 1000 frames a second, got those of 0",
+        ),
+        ([0.0, 1e-9, 2e-9, 5.0], {}, "got those of 1e+09"),
         ([0.0], {}, "which one frame does not tell: pass --fps"),
         ([0.0, 0.1, 0.2], {"fps": 30.0}, "fps: expected about 10, as the time stamps say, got 30: leave --fps out"),
         ([0.0, 0.1, 0.2, 60.0], {}, "expected gaps below 10 s, got one of 59.8 s after frame 2"),

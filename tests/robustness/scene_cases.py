@@ -196,7 +196,7 @@ SETS = (
         says="expected depths with the digest in manifest.json, got others",
         becomes="`verify` fails and names it; the others are verified",
     ),
-    Case(input="a sweep without axes", command=SWEEP, damage=replaced("sweep.toml", "eps3", "#"), says="axes"),
+    Case(input="a sweep without axes", command=SWEEP, damage=replaced("sweep.toml", "eps", "#"), says="axes"),
     Case(input="a sweep of no setting", command=SWEEP, damage=replaced("sweep.toml", "eps3", "eps9"), says="'eps9'"),
     Case(
         input="a sweep of 10^12 points",

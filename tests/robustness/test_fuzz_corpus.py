@@ -1,5 +1,6 @@
 """The readers that are fuzzed: valid files are read, and files changed at random are read or refused."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -36,3 +37,8 @@ def test_a_reader_reads_or_refuses(reader: str, tmp_path: Path) -> None:
     found = [path.read_bytes() for path in sorted(known.iterdir())] if known.is_dir() else []
     for content in [*found, *(changed(seeds[0], generator) for _ in range(CHANGED))]:
         target.take(content, tmp_path)
+
+
+def test_make_fuzzes_every_reader() -> None:
+    (line,) = re.findall(r"^READERS \?= ((?:.*\\\n)*.*)", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE)
+    assert sorted(line.replace("\\", "").split()) == sorted(TARGETS)
