@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
-import cv2
 import numpy as np
 import yaml
 
@@ -17,8 +17,7 @@ _MATRIX = ("camera_matrix", "cameraMatrix", "CameraMatrix", "K", "k")
 _DISTORTION = ("distortion_coefficients", "distortionCoefficients", "distCoeffs", "dist_coeffs", "D", "d")
 _WIDTH = ("image_width", "imageWidth", "width")
 _HEIGHT = ("image_height", "imageHeight", "height")
-_FILE_STORAGE = (b"opencv-matrix", b"%YAML:1.0")
-"""What only OpenCV writes; other readers of YAML and JSON do not understand it."""
+_OPENCV_HEADER = "%YAML:1.0"
 _COLUMN_MAJOR = "intrinsic_matrix"
 """Open3D's key: nine numbers, column by column."""
 
@@ -59,9 +58,8 @@ def camera_document(path: Path) -> dict[str, Any]:
     suffix = path.suffix.lower()
     if suffix not in (".json", ".toml", ".yaml", ".yml", ".xml"):
         raise InputError(f"{path}: expected a camera as .json, .toml, .yaml, .yml or .xml, got {suffix or 'no suffix'}")
-    content = path.read_bytes()
-    if suffix == ".xml" or any(mark in content for mark in _FILE_STORAGE):
-        document: Any = _file_storage(path)
+    if suffix == ".xml":
+        document: Any = _xml(path)
     elif suffix == ".json":
         document = json_document(path)
     elif suffix == ".toml":
@@ -73,31 +71,37 @@ def camera_document(path: Path) -> dict[str, Any]:
     return {str(key): value for key, value in document.items()}
 
 
+class _Loader(yaml.SafeLoader):  # type: ignore[misc] - yaml has no types
+    """YAML, also as OpenCV's FileStorage writes it: a matrix is a mapping with a tag of its own."""
+
+
+_Loader.add_constructor(
+    "tag:yaml.org,2002:opencv-matrix", lambda loader, node: loader.construct_mapping(node, deep=True)
+)
+
+
 def _yaml(path: Path) -> Any:
-    text = text_of(path, "YAML file")
+    text = text_of(path, "YAML file").removeprefix(_OPENCV_HEADER)  # Which is no directive of YAML's.
     try:
-        return yaml.safe_load(text)
-    except (yaml.YAMLError, ValueError, RecursionError) as error:  # ValueError: a date that is none.
+        return yaml.load(text, _Loader)
+    except (yaml.YAMLError, ValueError, TypeError, RecursionError) as error:  # ValueError: a date that is none.
         raise InputError(f"{path}: expected YAML, but {' '.join(str(error).split())}") from None
 
 
-def _file_storage(path: Path) -> dict[str, Any]:
+def _xml(path: Path) -> dict[str, Any]:
     """The numbers and matrices at the top of one of OpenCV's documents."""
     try:
-        storage = cv2.FileStorage(str(path), cv2.FileStorage_READ)
-        root = storage.root()
-        nodes = {name: root.getNode(name) for name in (root.keys() if root.isMap() else ())}
-        return {name: _content(node) for name, node in nodes.items()}
-    except (cv2.error, SystemError, UnicodeDecodeError) as error:
+        root = ElementTree.fromstring(path.read_bytes())
+    except (ElementTree.ParseError, ValueError, LookupError) as error:  # LookupError: an encoding that nobody knows.
         raise InputError(f"{path}: expected OpenCV's FileStorage, but {' '.join(str(error).split())}") from None
+    return {entry.tag: _entry(entry) for entry in root}
 
 
-def _content(node: cv2.FileNode) -> Any:
-    if node.isMap():
-        return node.mat()
-    if node.isSeq():
-        return [_content(node.at(index)) for index in range(node.size())]
-    return node.string() if node.isString() else node.real()
+def _entry(entry: ElementTree.Element) -> Any:
+    """A matrix or a list as words, which may be numbers; else a number or a word."""
+    data = entry.find("data")
+    words = ((entry if data is None else data).text or "").split()
+    return words[0] if data is None and len(words) == 1 else words
 
 
 def _matrix(document: Mapping[str, Any], source: str) -> np.ndarray:

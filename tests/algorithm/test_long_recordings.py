@@ -116,9 +116,9 @@ def test_an_estimate_of_a_single_frame() -> None:
 
 def test_few_points_of_many_are_a_motion_too(recording: Recording) -> None:
     """Epsilon 4 counts the trajectories among all that there were."""
-    many, few = (solve(recording, Settings(points_apart_px=apart, eps4=300)) for apart in (1, 4))
+    many, few = (solve(recording, Settings(points_apart_px=apart, eps4=200)) for apart in (1, 2))
     assert len(few.motion_ids) == len(many.motion_ids) == 1
-    assert 0 < len(np.unique(few.trajectory)) < 300 <= len(np.unique(many.trajectory))
+    assert 0 < len(np.unique(few.trajectory)) < 200 <= len(np.unique(many.trajectory))
 
 
 def test_what_stands_still_is_found_in_the_room_that_the_estimate_leaves() -> None:
