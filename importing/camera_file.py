@@ -71,7 +71,7 @@ def camera_document(path: Path) -> dict[str, Any]:
     return {str(key): value for key, value in document.items()}
 
 
-class _Loader(yaml.SafeLoader):  # type: ignore[misc] - yaml has no types
+class _Loader(yaml.SafeLoader):  # type: ignore[misc]  # It has no types.
     """YAML, also as OpenCV's FileStorage writes it: a matrix is a mapping with a tag of its own."""
 
 
