@@ -72,15 +72,19 @@ def _content(source: Path, key: str | None) -> _Content:
     name = depth_name([*shapes], key, source=source)
     small = [other for other, shape in shapes.items() if np.prod(shape, dtype=np.float64) < LARGEST_BESIDE]
     wanted = [other for other in small if other in beside_names() and other != name]
-    others = loadmat(source, variable_names=wanted) if wanted else {}
-    return _Content(name=name, shape=shapes[name], others={other: np.asarray(others[other]) for other in wanted})
+    others = {other: next(_images_named(source, other, shapes[other])) for other in wanted}
+    return _Content(name=name, shape=shapes[name], others=others)
 
 
 def _images(source: Path, found: _Content) -> Iterator[np.ndarray]:
-    """The images, one by one; files before version 5 hold one alone."""
+    return _images_named(source, found.name, found.shape)
+
+
+def _images_named(source: Path, name: str, shape: tuple[int, ...]) -> Iterator[np.ndarray]:
+    """An array's images, one by one, where SciPy's reader crashes on damaged ones; before version 5 there is one alone."""
     if matfile_version(source)[0] == 1:
-        return images_of(source, found.name, found.shape)
-    return iter([loadmat(source, variable_names=[found.name])[found.name]])
+        return images_of(source, name, shape)
+    return iter([loadmat(source, variable_names=[name])[name]])
 
 
 def _hdf5_content(source: Path, key: str | None) -> _Content:
