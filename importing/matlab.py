@@ -81,7 +81,7 @@ def _images(source: Path, found: _Content) -> Iterator[np.ndarray]:
 
 
 def _images_named(source: Path, name: str, shape: tuple[int, ...]) -> Iterator[np.ndarray]:
-    """An array's images, one by one, where SciPy's reader crashes on damaged ones; before version 5 there is one alone."""
+    """An array's images, one by one, for SciPy crashes on damaged files; of those before version 5 the only one."""
     if matfile_version(source)[0] == 1:
         return images_of(source, name, shape)
     return iter([loadmat(source, variable_names=[name])[name]])
