@@ -11,6 +11,9 @@ from importing.source import needed
 from recording.checks import text_of
 from recording.errors import DAMAGED, InputError
 
+_HEAD_BYTES, _LONGEST_COUNT = 10_000, 4
+"""So much of a PCD file is its header, and so many digits may say how many numbers a field has."""
+
 
 def cloud(path: Path) -> Float[np.ndarray, "point 3"]:
     """The points that a file holds, metres if the file has metres; those that are not finite left out."""
@@ -38,6 +41,10 @@ def _ply(path: Path) -> np.ndarray:
 
 
 def _pcd(path: Path) -> np.ndarray:
+    with path.open("rb") as file:
+        lines = [line.split() for line in file.read(_HEAD_BYTES).splitlines() if line.startswith(b"COUNT")]
+    if any(len(count) > _LONGEST_COUNT for _, *counts in lines for count in counts):  # The reader would name each.
+        raise ValueError("a field has too many numbers")
     pypcd4 = needed("pypcd4", extra="clouds", what=f"{path}, a PCD file")
     return np.asarray(pypcd4.PointCloud.from_path(path).numpy(("x", "y", "z")))
 

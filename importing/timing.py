@@ -81,7 +81,8 @@ def _rate(stamps: Float[np.ndarray, "moment"], fps: float | None, source: str) -
         if fps is None:
             raise InputError(f"{source}: expected frames a second, which one frame does not tell: pass --fps")
         return fps
-    measured = float(np.round(1 / np.median(np.diff(stamps)), 3))
+    with np.errstate(over="ignore"):  # What is infinite is too quick.
+        measured = float(np.round(1 / np.median(np.diff(stamps)), 3))
     if not SLOWEST_FPS <= measured <= QUICKEST_FPS:
         raise InputError(
             f"{source}: expected time stamps in seconds, of {SLOWEST_FPS:g} to {QUICKEST_FPS:g} frames a second, got "

@@ -1,5 +1,6 @@
 """The one error that a user's input can raise, and those that become it."""
 
+import lzma
 import struct
 import tokenize
 import zipfile
@@ -16,16 +17,8 @@ class InputError(ValueError):
 
 DAMAGED = (
     *(ArithmeticError, AssertionError, AttributeError, EOFError, LookupError, MemoryError, NameError, OSError),
-    *(
-        RuntimeError,
-        SyntaxError,
-        TypeError,
-        ValueError,
-        struct.error,
-        tokenize.TokenError,
-        zipfile.BadZipFile,
-        zlib.error,
-    ),
+    *(RuntimeError, SyntaxError, TypeError, ValueError),
+    *(lzma.LZMAError, struct.error, tokenize.TokenError, zipfile.BadZipFile, zlib.error),
 )
 """What readers that others wrote end with where a file is damaged, as fuzzing has shown; an `InputError` is among them.
 
