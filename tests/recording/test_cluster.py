@@ -72,6 +72,7 @@ def test_nothing_wanted_is_nothing_done(client: Client) -> None:
 
 
 def test_a_worker_of_its_own_has_one_thread(client: Client) -> None:
+    client.wait_for_workers(2, timeout=60)  # Another test has brought them down.
     assert set(map(tuple, client.run(threads).values())) == {("1", "1", "1")}
 
 
