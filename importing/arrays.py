@@ -57,7 +57,7 @@ def numpy_file(source: Path, wanted: Wanted) -> DepthSource:
             names, small = [*sizes], [name for name, size in sizes.items() if size < 8 * LARGEST_BESIDE]
             member = depth_name(names, wanted.key, source=source)
             with np.load(source, allow_pickle=False) as arrays:
-                others = {name: arrays[name] for name in small if name in beside_names() and name != member}
+                others = {name: np.asarray(arrays[name]) for name in small if name in beside_names() and name != member}
         header = _read_header(source, member)
     except DAMAGED as error:
         if isinstance(error, InputError):
