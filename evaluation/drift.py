@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float64, Int64
+from jaxtyping import Bool, Float64, Int, Int64
 
 from algorithm.trajectories import Trajectories
 from recording.correspondence import exact_labels
@@ -30,7 +30,7 @@ class Drift:
 
     length: Int64[np.ndarray, "trajectory"]
     """Frames."""
-    age: Int64[np.ndarray, "observation"]
+    age: Int[np.ndarray, "observation"]
     metres: Float64[np.ndarray, "observation"]
     """Distance from the true place."""
     two_objects: Bool[np.ndarray, "trajectory"]

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from worlds import Surface, box, depths_of, plane, small_camera, sphere
 
@@ -178,5 +178,6 @@ def test_sampling_a_surface_is_bilinear_over_its_own_pixels(seed: int, row: floa
             weight = max(0.0, 1 - abs(i - row)) * max(0.0, 1 - abs(j - column))
             if weight and abs(depth[i, j] - 2.0) <= 0.1:
                 total, value = total + weight, value + weight * image[i, j]
+    assume(abs(total - 0.2) > 1e-9)  # The last digit decides, and sums differ in it.
     expected = value / total if total >= 0.2 else np.nan
     np.testing.assert_allclose(on_surface(image, depth, (row, column), 2.0, 0.1), expected, atol=1e-9)
