@@ -57,6 +57,12 @@ def opened(viewer: Viewer, page: Page) -> Page:
     return page
 
 
+def solved_with(viewer: Viewer, setting: str) -> object:
+    """The value of a setting that the answer which is shown was made with; None without an answer."""
+    answer = viewer.session.answer
+    return None if answer is None else answer.motions.making.settings[setting]
+
+
 def until(done: Callable[[], bool]) -> None:
     """Wait until something has come true in the viewer."""
     end = time.monotonic() + PATIENCE_MS / 1000
@@ -139,10 +145,9 @@ def test_a_slider_solves_anew_and_shows_the_change_of_the_scores(viewer: Viewer,
     thumb = slider(opened, "eps2 [m]")
     for _ in range(8):
         thumb.press("ArrowRight")
+    until(lambda: solved_with(viewer, "eps2") == pytest.approx(0.18))  # On the way there others may be solved.
     expect(opened.get_by_text("solved in")).to_be_visible(timeout=PATIENCE_MS)
     expect(opened.locator("td strong").first).to_be_visible(timeout=PATIENCE_MS)
-    assert viewer.session.answer is not None
-    assert viewer.session.answer.motions.making.settings["eps2"] == pytest.approx(0.18)
     keep("viewer_solved_anew")
     opened.get_by_role("button", name="As opened").click()
     until(lambda: viewer.session.answer is viewer.session.opened)
