@@ -14,6 +14,7 @@ from algorithm.depth_image import depth_range
 from evaluation.figures.style import write_figure
 from recording.errors import InputError
 from recording.frame import REASONS, Frame, Reason
+from recording.over_time import spread_numbers
 from recording.palette import COLOURS
 from recording.recording import Recording
 
@@ -38,8 +39,8 @@ def draw_contact_sheet(recording: Recording, path: Path, *, overwrite: bool = Fa
     if path.suffix not in (".png", ".svg"):
         raise InputError(f"{path}: expected a picture that ends in .png or .svg")
     count = recording.metadata.frames
-    moments = np.unique(np.linspace(0, count - 1, _FRAMES_SHOWN).round().astype(int))
-    frames = [recording.frames[int(moment)] for moment in moments]
+    moments = spread_numbers(count, _FRAMES_SHOWN)
+    frames = [recording.frames[moment] for moment in moments]
     kinds = [kind for kind in (_depth, _objects, _reasons) if any(kind(frame) is not None for frame in frames)]
     low, high = depth_range([frame.depth for frame in frames])
     paints = {

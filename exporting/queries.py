@@ -10,6 +10,7 @@ from recording.camera import PIXEL_CENTRE
 from recording.correspondence import exact_labels
 from recording.frame import Labels
 from recording.motions import NOISE
+from recording.over_time import spread_numbers
 
 _FRAMES, _COUNT = 8, 1024
 """Without motions tracks begin in so many frames, and are at most so many."""
@@ -53,7 +54,7 @@ def first_seen(source: Source) -> Queries:
 def evenly_spread(source: Source) -> Queries:
     """Pixels of moving objects, one of so many in each of some frames that are spread over the recording."""
     recording, found = source.recording, []
-    for moment in np.unique(np.linspace(0, source.frames - 1, _FRAMES).round().astype(int)).tolist():
+    for moment in spread_numbers(source.frames, _FRAMES):
         objectid = exact_labels(recording.frames[moment], moment).objectid
         row, column = np.nonzero(np.isin(objectid, recording.moving_ids))
         found.append(np.stack([column, row, np.full(len(row), moment)], axis=-1))

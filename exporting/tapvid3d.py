@@ -20,6 +20,7 @@ from exporting.source import Source
 from recording.camera import transformed
 from recording.correspondence import material_places
 from recording.frame import Labels
+from recording.over_time import spread_numbers
 from recording.sight import covering
 
 _LOOKED_AT = 9
@@ -115,7 +116,7 @@ def _new_file(source: Source, folder: Path, queries: Queries) -> Iterator[Archiv
 def _pictures(source: Source) -> Iterator[bytes]:
     """Every frame's depth as JPEG: near is light, what has no return is black."""
     frames = source.recording.frames
-    some = np.unique(np.linspace(0, source.frames - 1, _LOOKED_AT).round().astype(int)).tolist()
+    some = spread_numbers(source.frames, _LOOKED_AT)
     depths = [frames[number].depth for number in some]
     present = np.concatenate([depth[np.isfinite(depth)] for depth in depths] or [np.zeros(0)])
     near, far = (present.min(), present.max()) if present.size else (0.0, 1.0)

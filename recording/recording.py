@@ -15,6 +15,7 @@ from recording.frame import Frame
 from recording.markup import beside, depth_thumbnail, facts
 from recording.metadata import Metadata
 from recording.motions import NOISE, Motions
+from recording.over_time import spread_numbers
 from recording.palette import colours_of
 from recording.truth import Truth
 from recording.xray import XRay
@@ -93,8 +94,8 @@ class Recording:
 
     def _usual_depths(self) -> tuple[float, float]:
         """The least and the greatest depth of some frames spread over the recording, so that colours mean the same."""
-        moments = np.unique(np.linspace(0, self.metadata.frames - 1, _FRAMES_LOOKED_AT).round().astype(int))
-        depths = [self.frames[int(moment)].depth for moment in moments]
+        moments = spread_numbers(self.metadata.frames, _FRAMES_LOOKED_AT)
+        depths = [self.frames[moment].depth for moment in moments]
         present = np.concatenate([depth[np.isfinite(depth)] for depth in depths])
         return (float(present.min()), float(present.max())) if present.size else (0.0, 1.0)
 

@@ -105,3 +105,10 @@ def recording_of(depths: Sequence[np.ndarray]) -> Recording:
         metadata=metadata_of(camera, frames=len(depths), fps=FPS),
         frames=tuple(Frame(depth=depth.astype(np.float32)) for depth in depths),
     )
+
+
+def ball_behind_another() -> Recording:
+    """A ball passes behind one that stands still."""
+    near = sphere(lambda frame: (0.1, 0, 1.5), 0.25)
+    far = sphere(lambda frame: (-0.9 + 0.12 * frame, 0, 2.5), 0.3)
+    return recorded([near, far], frames=16, moving=[False, True])

@@ -7,7 +7,7 @@ from unittest.mock import patch
 
 import numpy as np
 import pytest
-from worlds import recorded, sphere
+from worlds import ball_behind_another
 
 from algorithm import pipeline, staged
 from algorithm.flow_parts import FlowParts
@@ -26,10 +26,7 @@ SHARED = {"algorithm.given", "algorithm.settings", "algorithm.stopwatch"}
 
 @pytest.fixture(scope="module")
 def recording() -> Recording:
-    """A ball passes behind another."""
-    near = sphere(lambda frame: (0.1, 0, 1.5), 0.25)
-    far = sphere(lambda frame: (-0.9 + 0.12 * frame, 0, 2.5), 0.3)
-    return recorded([near, far], frames=16, moving=[False, True])
+    return ball_behind_another()
 
 
 @pytest.fixture

@@ -176,7 +176,7 @@ IMPORTS = (
         damage=_images(*_DEPTH),
     ),
     Case(
-        input="a unit that makes metres of millimetres",
+        input="a unit that puts depths beyond 100 km",
         command=_import("depth", "--scale 100"),
         says="pass another --scale",
         damage=_images(*_DEPTH),
